@@ -13,6 +13,7 @@ from rich.table import Table
 from ryusa.errors import ResultsError
 from ryusa.measure.energy import TERMS
 from ryusa.measure.table import ROUND_OFF
+from ryusa.measure.water_energy import WATER_TERMS
 
 if TYPE_CHECKING:
     from ryusa.measure import (
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         Sizes,
         Tracks,
         Vibration,
+        WaterEnergy,
     )
     from ryusa.results import Results
 
@@ -79,23 +81,34 @@ def _print_tracks(found: "Tracks") -> None:
 
 def _print_energy(found: "Energy") -> None:
     """Print every term of the account at the end of the run, by its name and by its column in the CSV."""
-    table = _table(("term at the end of the run", "energy [J]", "column of the CSV"))
-    table.columns[0].justify = table.columns[2].justify = "left"
+    held = ("held", "held", found.held)
+    _print_account(found, held, TERMS, "J", "held - start - supplied + lost", "docs/glossary.md")
 
-    def add(group: str, key: str, terms: Mapping[str, Any]) -> None:
+
+def _print_water_energy(found: "WaterEnergy") -> None:
+    """Print every term of the account of the water in a row, as `_print_energy`."""
+    changed = ("change", "changed", found.changed)
+    _print_account(found, changed, WATER_TERMS, "J/m", "changes - supplied + lost", "docs/river.md")
+
+
+def _print_account(
+    found: "Energy | WaterEnergy", first: tuple[str, str, Mapping[str, Any]], words: Mapping[str, str],
+    unit: str, rest: str, where: str,
+) -> None:  # fmt: skip
+    """Print an account: `first` is what it holds (group, key of the column, terms), `rest` what must be 0."""
+    table = _table(("term at the end of the run", f"energy [{unit}]", "column of the CSV"))
+    table.columns[0].justify = table.columns[2].justify = "left"
+    per = unit.replace("/", "_")
+    for group, key, terms in (first, ("lost", "lost", found.lost), ("supplied", "given", found.given)):
         for name, values in terms.items():
             value = f"{values[-1]:.6g}" if len(values) else "-"
-            table.add_row(f"{group}: {TERMS[name]}", value, f"{key}_{name}_J")
-
-    add("held", "held", found.held)
-    add("lost", "lost", found.lost)
-    add("supplied", "given", found.given)
-    rest = f"{found.imbalance[-1]:.3g}" if len(found.imbalance) else "-"
-    table.add_row("imbalance: held - start - supplied + lost", rest, "imbalance_J")
+            table.add_row(f"{group}: {words[name]}", value, f"{key}_{name}_{per}")
+    last = f"{found.imbalance[-1]:.3g}" if len(found.imbalance) else "-"
+    table.add_row(f"imbalance: {rest}", last, f"imbalance_{per}")
     _show(
         table,
         f"largest imbalance over largest term: {found.residual:.2g}",
-        "docs/glossary.md explains the terms",
+        f"{where} explains the terms",
     )
 
 
@@ -224,4 +237,5 @@ _OWN_FORM: dict[str, Callable[..., None]] = {
     "surface": _print_surface,
     "tracks": _print_tracks,
     "vibration": _print_vibration,
+    "water_energy": _print_water_energy,
 }

@@ -39,6 +39,7 @@ from ryusa.measure.vibration import (
     vibration,
 )
 from ryusa.measure.water import WaterProfile, water
+from ryusa.measure.water_energy import WaterEnergy, water_energy
 
 __all__ = [
     "Alternating",
@@ -79,6 +80,7 @@ __all__ = [
     "Transport",
     "VibratingGrains",
     "Vibration",
+    "WaterEnergy",
     "WaterProfile",
     "alternating",
     "apparent_contact",
@@ -125,6 +127,7 @@ __all__ = [
     "vibrating_share",
     "vibration",
     "water",
+    "water_energy",
     "write_csv",
 ]
 

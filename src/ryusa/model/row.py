@@ -134,7 +134,7 @@ class ColumnRow:
         return {
             "surface": (segments,), "volume": (segments,), "content": (segments, n), "phi": (segments, n),
             "discharge": (stations,), "passed": (stations,), "tau": (stations,), "u": (stations, n),
-            "w": (stations, n),
+            "w": (stations, n), "energy": (N_ROW_TERM,),
         }  # fmt: skip
 
     def state_shapes(self) -> dict[str, tuple[int, ...]]:
@@ -145,6 +145,7 @@ class ColumnRow:
             "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
             "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
             "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
+            "energy": (N_ROW_TERM,),
         }  # fmt: skip
 
     def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
@@ -268,7 +269,7 @@ class RowState:
     profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
     edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
     budgets: Floats  # momentum budget, shape (n_station, N_OUT)
-    # energy account since the start, indexed by RowTerm [J/m]; nan where a checkpoint of earlier versions has none
+    # energy account since the start [J/m], indexed by RowTerm; since the checkpoint of an earlier version
     energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done

@@ -1,7 +1,7 @@
 """Frames of one quantity over all parts of a run, read from the disk when they are indexed."""
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -192,13 +192,14 @@ class LazyFrames:
 
 
 def read_frames(
-    parts: list[Part], group: str, shapes: Mapping[str, tuple[int, ...]]
+    parts: list[Part], group: str, shapes: Mapping[str, tuple[int, ...]], later: Set[str] = frozenset()
 ) -> dict[str, NDArray[np.float64]]:
     """Read datasets of one group over all frames, each as one read-only array.
 
     Parameters
     ----------
     shapes : of one frame of each dataset.
+    later : datasets that parts of earlier versions lack, nan there.
 
     Raises
     ------
@@ -211,6 +212,9 @@ def read_frames(
         with opened(part.path) as file:
             for name, tail in shapes.items():
                 key, shape = f"{group}/{name}", (part.n_frame, *tail)
+                if name in later and key not in file:
+                    rows[name].append(np.full(shape, np.nan))
+                    continue
                 got = plain_dataset(file, key, part.path)
                 if got.shape != shape or got.dtype != np.float64:
                     raise ResultsError(

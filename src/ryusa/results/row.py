@@ -29,6 +29,8 @@ class RowFrames:
     passed : water that has passed since the start, per width [m2], shape (n_frame, n_station).
     tau : shear stress of the water at the bottom [Pa], shape (n_frame, n_station).
     u, w : velocity along x and upwards [m/s], shape (n_frame, n_station, n).
+    energy : energy account of the water since the start, per width [J/m], indexed by `model.row_energy.RowTerm`,
+        shape (n_frame, N_ROW_TERM); nan in frames of versions that kept none.
     """
 
     row: ColumnRow
@@ -42,6 +44,7 @@ class RowFrames:
     tau: Floats
     u: Floats
     w: Floats
+    energy: Floats
 
     @property
     def floor(self) -> Floats:
@@ -62,5 +65,5 @@ def read_row(parts: list[Part], t: Floats, row: ColumnRow) -> RowFrames:
     ------
     ResultsError : a part lacks it, or has it in another shape.
     """
-    found = read_frames(parts, schema.ROW, row.frame_shapes())
+    found = read_frames(parts, schema.ROW, row.frame_shapes(), schema.LATER_IN_ROW)
     return RowFrames(row, t, **found)

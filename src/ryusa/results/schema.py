@@ -60,6 +60,7 @@ WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
 # in a group of a part, if the run has a row of columns: k frames of what `ColumnRow.frame_shapes` names
 ROW = "row"
+LATER_IN_ROW = {"energy"}  # nan in frames of versions that did not have it
 
 # impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
 WALLS = "walls"

@@ -37,6 +37,8 @@ def buffered_frames(recorder: CheckpointBlock, scene: Scene, folder: Path) -> di
             for names, tail in (cells, faces, (schema.WATER_NUMBERS, ())):
                 shapes |= {f"{schema.WATER}/{name}": ((k, *tail), _FLOAT) for name in names}
         in_row = {} if scene.row is None or not k else scene.row.frame_shapes()
+        for name in schema.LATER_IN_ROW & in_row.keys():
+            rows.setdefault(f"{schema.ROW}/{name}", np.full((k, *in_row[name]), np.nan))
         shapes |= {f"{schema.ROW}/{name}": ((k, *tail), _FLOAT) for name, tail in in_row.items()}
         if scene.forces:
             n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0

@@ -197,4 +197,5 @@ def _of_row(water: RowCoupling) -> dict[str, NDArray[np.float64]]:
         "discharge": water.passing.copy(),
         "passed": state.passed.copy(),
         "tau": state.edges[np.arange(len(sill)), 0, sill],
+        "energy": state.energy.copy(),
     }

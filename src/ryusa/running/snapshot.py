@@ -35,10 +35,11 @@ from ryusa.running.checkpoint import CheckpointBlock
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
-# arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records
+# arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records, and the
+# energy account of a row, which checkpoints of earlier versions do not have
 _ZERO_UNLESS_USED = {
     f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
-}
+} | {"coupling/water/energy"}
 _MOTION = ("x", "v", "omega")  # nan in a state where a grain is not there, zero in a checkpoint
 _MOTION_OF_BODIES = ("bodies/x", "bodies/v", "bodies/q", "bodies/momentum")
 _AT_ONCE = 1 << 14  # contacts

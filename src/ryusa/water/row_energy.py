@@ -62,9 +62,7 @@ def kinetic_at(p: ColumnParameters, shape: "RowShape", water: "RowWater", j: int
 
 
 @sums
-def add_held(
-    p: ColumnParameters, shape: "RowShape", water: "RowWater", times: float, books: Floats
-) -> None:
+def add_held(p: ColumnParameters, shape: "RowShape", water: "RowWater", times: float, books: Floats) -> None:
     """Add the kinetic and the potential energy of the row to the account, `times` 1 or -1."""
     kinetic, lift = 0.0, 0.0
     for j in range(len(shape.kind)):  # as `kinetic_at`, without a call for each

@@ -19,6 +19,7 @@ from ryusa.studies.validation import river_basics as basics
 from ryusa.studies.validation import river_dam as dam
 from ryusa.studies.validation import river_dam_break as over_bed
 from ryusa.studies.validation import river_delta as delta
+from ryusa.studies.validation import river_energy as energy
 from ryusa.studies.validation import river_exner as exner
 from ryusa.studies.validation import river_grains as with_grains
 from ryusa.studies.validation import river_impact as impact
@@ -184,7 +185,14 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
-    every += [_backwater(), impact.alone(), *with_grains.tasks(plan), *delta.tasks(plan), *exner.tasks(plan)]
+    every += [
+        _backwater(),
+        impact.alone(),
+        *energy.tasks(),
+        *with_grains.tasks(plan),
+        *delta.tasks(plan),
+        *exner.tasks(plan),
+    ]
     every += [*dam.tasks(plan), *overload.tasks(plan), *over_bed.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
@@ -226,6 +234,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         *uniforms,
         _m1(found),
         impact.of_bore(found),
+        *energy.judge(found),
         *seepages,
         _weirs(found, _crests(plan)),
         *with_grains.judge(found, plan),

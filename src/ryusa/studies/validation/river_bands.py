@@ -135,3 +135,7 @@ BORE_WAY = at_most(0.02, "half a segment, and the time in which the bore forms")
 FRONT_FORCE = Band(
     0.7, 1.3, "-", "30 %: one fluid with one speed, as for the way of a front, and hydrostatic pressure"
 )
+# The energy account of the water (design/0027): what is left over, and losses of known size.
+ENERGY_CLOSES = at_most(1e-12, "round-off of the sums over cells and steps")
+ENERGY_BORE = Band(0.98, 1.02, "-", "2 %: the depth behind the bore is known to half a per cent")
+ENERGY_UNIFORM = at_most(1e-4, "the discharge of uniform flow is within 1e-5 of that of one column")

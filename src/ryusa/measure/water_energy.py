@@ -1,0 +1,88 @@
+"""The energy account of the water in a row of columns over time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.long_section import row_of
+from ryusa.model.row_energy import CHANGES, ROW_GIFTS, ROW_LOSSES, RowTerm, row_imbalance
+
+WATER_TERMS = {
+    "kinetic": "kinetic",
+    "potential": "potential",
+    "gravity": "gravity along the axis",
+    "driver": "imposed pressure gradient",
+    "upstream": "upstream end",
+    "downstream": "downstream end",
+    "grains": "forces of grains",
+    "displaced": "displacement by grains",
+    "bed": "shear stress at the bottom",
+    "side": "side walls",
+    "shear": "stress between cells",
+    "porous": "drag of porous solids",
+    "fall": "falls, walls and dams",
+    "upwind": "scheme: momentum from upstream",
+    "late": "scheme: implicit step",
+    "surface": "scheme: explicit surface",
+}  # key of a term -> what it is, as printed
+
+
+@dataclass(frozen=True)
+class WaterEnergy:
+    """Terms of the account since the start, per width, at each frame [J/m], each of shape (n_frame,).
+
+    Attributes
+    ----------
+    t : times [s].
+    changed : changes of kinetic and potential energy, by name.
+    lost : energy that the water has lost, by name.
+    given : energy that it was given, by name; negative where it gave.
+    imbalance : what the terms leave over.
+    """
+
+    t: Floats
+    changed: dict[str, Floats]
+    lost: dict[str, Floats]
+    given: dict[str, Floats]
+    imbalance: Floats
+
+    @property
+    def residual(self) -> float:
+        """Largest imbalance over the largest term [-], both over all frames."""
+        every = (one for group in (self.changed, self.lost, self.given) for one in group.values())
+        largest = max(float(np.abs(one).max(initial=0.0)) for one in every)
+        return float(np.abs(self.imbalance).max(initial=0.0)) / largest if largest > 0.0 else 0.0
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per frame."""
+        columns = {"t_s": self.t}
+        for key, group in (("changed", self.changed), ("lost", self.lost), ("given", self.given)):
+            columns |= {f"{key}_{name}_J_m": one for name, one in group.items()}
+        columns["imbalance_J_m"] = self.imbalance
+        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+
+
+def water_energy(run: Run) -> WaterEnergy:
+    """Energy account of the water in a row of columns, as its steps summed it.
+
+    Frames of versions that kept no account are left out; after a resume from a checkpoint of such a version
+    it counts from there.
+
+    Raises
+    ------
+    ResultsError : the run has no row of columns, or none of its frames has the account.
+    """
+    found = row_of(run)
+    kept = ~np.isnan(found.energy).any(axis=1)
+    if not kept.any():
+        raise ResultsError("this run is of a version that kept no account of the energy of its water")
+    account = found.energy[kept]
+
+    def named(terms: tuple[RowTerm, ...]) -> dict[str, Floats]:
+        return {term.name.lower(): account[:, term] for term in terms}
+
+    return WaterEnergy(
+        found.t[kept], named(CHANGES), named(ROW_LOSSES), named(ROW_GIFTS), row_imbalance(account)
+    )
