@@ -1,9 +1,11 @@
 """A row of columns from a case file: it runs, is recorded and read back, and resumes with the same bits."""
 
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
@@ -14,6 +16,7 @@ from ryusa.casefile.read import read_text
 from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.errors import CaseError, ResultsError, WaterError
 from ryusa.measure.long_section import long_section
+from ryusa.measure.water_energy import water_energy
 from ryusa.report.page import report_page
 from ryusa.results import Results, schema
 from ryusa.results.read import read_scenes
@@ -102,6 +105,29 @@ def test_the_discharge_of_a_frame_is_what_passed_in_its_step_at_open_ends_too(tm
     assert found is not None
     assert np.allclose(np.diff(found.passed, axis=0) / 0.005, found.discharge[1:], rtol=1e-9, atol=1e-12)
     assert (found.discharge[-1, [0, -1]] > 0.01).all()
+
+
+def test_the_energy_account_of_the_water_closes(weir: Results) -> None:
+    found = water_energy(weir)
+    assert len(found.t) == 31 and len(found.rows()) == 31
+    assert found.residual < 1e-13
+    assert found.given["upstream"][-1] > found.lost["fall"][-1] > found.lost["bed"][-1] > 0.0
+    assert found.given["downstream"][-1] < 0.0
+    assert not any(one[0] for one in (*found.changed.values(), *found.lost.values()))
+
+
+def test_a_folder_of_a_version_without_the_account_is_read(weir: Results, tmp_path: Path) -> None:
+    old = tmp_path / "old"
+    shutil.copytree(weir.folder, old)
+    parts = sorted((old / "parts").glob("part-*.h5"))
+    for path in parts:
+        with h5py.File(path, "r+") as file:
+            del file["row/energy"]
+    found = Results.open(old)
+    assert np.isnan(found.row.energy).all()
+    assert np.array_equal(found.row.u, weir.row.u)
+    with pytest.raises(ResultsError, match="of a version that kept no account"):
+        water_energy(found)
 
 
 def test_a_long_section_has_the_stress_of_the_flow_up_to_the_inlet(weir: Results) -> None:

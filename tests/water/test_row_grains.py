@@ -23,6 +23,7 @@ from ryusa.laws.families import (
 )
 from ryusa.model import Column, Water
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.model.scene import EventRule
 from ryusa.water import momentum_balance as m
 from ryusa.water.coupling import Coupling
@@ -187,6 +188,9 @@ def test_grains_and_water_together_gain_what_weight_and_bed_give_over_the_row():
         assert abs(b[m.B_ADVECTED]) < 1e-12 * area * np.abs(now.budgets[:, m.B_ADVECTED]).sum()
         assert grains.worst < 1e-11
     assert np.ptp(now.surface) > 1e-4
+    account, size = now.energy, np.abs(now.energy).max()  # of the water, grains included
+    assert abs(row_imbalance(account)) < 1e-12 * size
+    assert min(abs(account[RowTerm.GRAINS]), abs(account[RowTerm.DISPLACED])) > 1e-6 * size
 
 
 def lattice(length, high, pitch, low=0.0):

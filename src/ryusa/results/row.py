@@ -29,8 +29,8 @@ class RowFrames:
     passed : water that has passed since the start, per width [m2], shape (n_frame, n_station).
     tau : shear stress of the water at the bottom [Pa], shape (n_frame, n_station).
     u, w : velocity along x and upwards [m/s], shape (n_frame, n_station, n).
-    energy : energy account of the water since the start, per width [J/m], indexed by `model.row_energy.RowTerm`,
-        shape (n_frame, N_ROW_TERM); nan in frames of versions that kept none.
+    energy : energy account of the water since the start, per width [J/m], indexed by
+        `model.row_energy.RowTerm`, shape (n_frame, N_ROW_TERM); nan in frames of versions that kept none.
     """
 
     row: ColumnRow

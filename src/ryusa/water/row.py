@@ -175,7 +175,8 @@ def advance_row(
         array.flags.writeable = False
     return replace(
         state, **water._asdict(), profiles=rows, edges=faces, budgets=out, energy=energy,
-        t=state.t + time, steps=state.steps + int(scalars[STEPS]), courant=max(state.courant, float(scalars[COURANT_MET])),
+        t=state.t + time, steps=state.steps + int(scalars[STEPS]),
+        courant=max(state.courant, float(scalars[COURANT_MET])),
     )  # fmt: skip
 
 

@@ -143,8 +143,8 @@ def book_station(
 
     Notes
     -----
-    Content that stays in a cell loses (1/2) c (dU)**2 in time, water that comes from a cell with another speed
-    (1/2) |Q| (dU)**2. Cells without a balance, below the sill and above `last`, lose all that comes to them.
+    Content that stays in a cell loses (1/2) c (dU)**2 in time, water that comes from a cell with another
+    speed (1/2) |Q| (dU)**2. Cells without a balance, below the sill and above `last`, lose what they get.
     """
     # One function, for a call with arrays costs as much as the sums over a station
     turned, add = math.sqrt(steep), sill + last + 1
