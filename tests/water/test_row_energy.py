@@ -88,7 +88,7 @@ def test_the_account_closes_among_grains_that_are_given_as_forces(bedload):
     now = row_at_rest(row, row.bottom + 0.03, solid)
     for _ in range(20):
         phi = packed * rng.uniform(0.8, 1.2, (n, c.n)) + solid.phi
-        force, slope = rng.normal(50.0, 20.0, (n + 1, c.n)), rng.uniform(0.0, 5.0, (n + 1, c.n))
+        force, slope = rng.normal(3e3, 1e3, (n + 1, c.n)), rng.uniform(0.0, 5.0, (n + 1, c.n))
         none = np.zeros((n + 1, c.n))
         grains = GrainAction(phi, force, slope, none, none)
         now = advance_row(row, now, 1e-3, solid=solid, grains=grains)

@@ -55,6 +55,17 @@ class WaterEnergy:
         largest = max(float(np.abs(one).max(initial=0.0)) for one in every)
         return float(np.abs(self.imbalance).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
+    def quantities(self) -> list[tuple[str, float, str]]:
+        """Terms at the end that are not zero, and what is left over: name, value, unit."""
+        groups = (("change", self.changed), ("supplied", self.given), ("lost", self.lost))
+        found = [
+            (f"{group}: {WATER_TERMS[name]}", float(one[-1]), "J/m")
+            for group, terms in groups
+            for name, one in terms.items()
+            if one[-1] != 0.0
+        ]
+        return [*found, ("largest imbalance over largest term", self.residual, "-")]
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
         columns = {"t_s": self.t}

@@ -258,7 +258,7 @@ def book_row(
         books[FALL] -= weight * dt * total[j] * (rises - works)
         books[SURFACE] += weight * dt * works * (moved[j] - total[j])
     for i in range(shape.inner[0], shape.inner[1]):
-        gain = -dt / shape.dx * (total[shape.east[i]] - total[shape.west[i]])
+        gain = float(-dt / shape.dx * (total[shape.east[i]] - total[shape.west[i]]))
         if gain != 0.0:
             low = lag_of_surface(p, gain, phi[i], water.content[i], water.wet[i], water.surface[i])
             books[SURFACE] += weight * shape.dx * low
