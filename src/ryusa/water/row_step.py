@@ -283,11 +283,13 @@ def continuity(
             p, shape.first[i], per_dx, per_dt, water.content[i], work.old[i], work.flux[west],
             work.flux[east], work.q[i],
         )  # fmt: skip
+        # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
+        turned_west, turned_east = math.sqrt(shape.steep[west]), math.sqrt(shape.steep[east])
         for k in range(n):
             through = 0.5 * (work.flux[west, k] + work.flux[east, k])
-            up = west if through > 0.0 else east
-            # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
-            u, turned = water.u[up, k], math.sqrt(shape.steep[up])
+            u, turned = water.u[east, k], turned_east
+            if through > 0.0:
+                u, turned = water.u[west, k], turned_west
             work.carried[i, k] = through * u * turned
             work.energy.through[i, k], work.energy.speed[i, k] = through, u * turned
     return DONE
