@@ -72,13 +72,13 @@ def _unknown(line: str, known: dict[str, Any]) -> list[str]:
 
 
 def draw(folder: Path) -> None:
-    """Run the commands of every picture of a packaged case in a folder, and keep the pictures."""
+    """Run the commands of the pictures of packaged cases in a folder, but those of hours, and keep these."""
     from PIL import Image
 
     folder.mkdir(parents=True)
     ran: set[str] = set()
     for one in entries():
-        if any(line.startswith("ryusa paper") for line in one["commands"]):
+        if one.get("hours") or any(line.startswith("ryusa paper") for line in one["commands"]):
             continue
         for line in one["commands"]:
             if line not in ran:

@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, cast
 
 import typer
 
@@ -57,6 +57,10 @@ def film(
     follow: Annotated[
         int | None, typer.Option(metavar="GRAIN", help="Keep this free grain in the middle, in a ring.")
     ] = None,
+    bed: Annotated[
+        str | None,
+        typer.Option(metavar="WORD", help="What ends the bed of a long section: packed (default) or rest."),
+    ] = None,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Write a film of the grains of a run, or of its long section; needs no display and no graphics card.
@@ -81,7 +85,8 @@ def film(
         with shown_progress("pictures", quiet=quiet) as progress:
             made = write_film(
                 results, path, view=view, colour=colour, frames=frames, speed=speed, fps=fps,
-                size=(int(numbers[1]), int(numbers[2])), follow=follow, progress=progress, **window,
+                size=(int(numbers[1]), int(numbers[2])), follow=follow, bed=cast(Any, bed),
+                progress=progress, **window,
             )  # fmt: skip
     except CaseError as error:  # of a parameter, which is the option of the same name
         raise CaseError(f"--{error.key}", error.value, error.allowed, error.nearest) from None

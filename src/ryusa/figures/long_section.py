@@ -17,9 +17,10 @@ FEW_METRES = 3.0  # span of lengths from which they are drawn in metres, below i
 MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s [m2/s]
 WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
-FAST = 6.0  # Froude number up to which its axis goes at most, that of thin films
+FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
 SHARE = 0.995  # of the values that a colour scale covers
 TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
+MOST = 0.9
 CALM = 0.98  # of the energy line that its axis covers: that of thin fast films would dwarf all else
 
 
@@ -57,11 +58,11 @@ def long_section(
     axes[1].plot(x, found.froude, color=WATER)
     _band(axes[1], found, "froude", 1.0, WATER)
     axes[1].set_ylabel("Froude  (–)")
+    known = np.nan_to_num(np.concatenate([one.froude[one.depth > THIN] for one in every]))
     if among:
-        axes[1].set_ylim(
-            0.0, max(1.05 * max(float(np.nan_to_num(one.froude).max(initial=1.0)) for one in every), 1.1)
-        )
-    axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], FAST))
+        axes[1].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
+    most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
+    axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], most))
     if found.grains:
         transport = np.concatenate([one.solid_discharge for one in every])
         scale, unit = _per_width(transport)
@@ -70,9 +71,9 @@ def long_section(
         _band(axes[2], found, "solid_discharge", scale, LINE)
         axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
         if among:
-            least, most = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
-            room = 0.05 * (most - least) or 1.0
-            axes[2].set_ylim(least - room, most + room)
+            low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
+            room = 0.05 * (high - low) or 1.0
+            axes[2].set_ylim(low - room, high + room)
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
     half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.5
     axes[-1].set_xlim(x[0] - half, x[-1] + half)

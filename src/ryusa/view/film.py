@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CaseError, ResultsError
+from ryusa.measure.long_section import Bed
 from ryusa.results import Results
 from ryusa.spelling import nearest_word
 from ryusa.view.box import Floats, box_of, needs_grains
@@ -65,6 +66,7 @@ def film(
     fps: float = FPS,
     size: tuple[int, int] = SIZE,
     follow: int | None = None,
+    bed: Bed | None = None,
     progress: Callable[[float], None] = lambda share: None,
 ) -> Timing:
     """Write a film of a run.
@@ -81,6 +83,7 @@ def film(
     fps : pictures a second, 1 to 60.
     size : width and height [pixel].
     follow : free grain that stays in the middle of the picture.
+    bed : of a long section, what ends the bed: "packed", the default, or "rest".
     progress : called with the share that is done.
 
     Notes
@@ -107,7 +110,9 @@ def film(
         for key, value in (("colour", colour), ("follow", follow)):
             if value is not None:
                 raise CaseError(key, value, "is of films of grains; a long section has none")
-        return _of_section(results, path, begin, end, frames, speed, fps, size, progress)
+        return _of_section(results, path, begin, end, frames, speed, fps, size, bed or "packed", progress)
+    if bed is not None:
+        raise CaseError("bed", bed, "is of films of long sections: view = 'long_section'")
     needs_grains(results)
     one = _colouring(colour or "speed")
     if follow is not None and results.scene.traffic is not None:
@@ -143,7 +148,7 @@ def film(
 
 def _of_section(
     results: Results, path: Path, begin: float, end: float, frames: int | None, speed: float | None,
-    fps: float, size: tuple[int, int], progress: Callable[[float], None],
+    fps: float, size: tuple[int, int], bed: Bed, progress: Callable[[float], None],
 ) -> Timing:  # fmt: skip
     """Write a film of the long section; parameters as of `film`."""
     made = _planned(results.frames.t[_window(results, begin, end)], frames, speed, fps)
@@ -151,8 +156,9 @@ def _of_section(
     title = str(results.case.get("title") or results.folder.resolve().name)
     digits = _digits(made.speed / fps)
     pictures = section_pictures(
-        results, made.times, size, lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time"
-    )
+        results, made.times, size, lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time",
+        bed,
+    )  # fmt: skip
 
     def draw(k: int):
         picture = pictures(k)

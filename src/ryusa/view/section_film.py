@@ -8,7 +8,7 @@ from PIL import Image
 from ryusa.errors import ResultsError
 from ryusa.figures import long_section as figures
 from ryusa.figures import style
-from ryusa.measure.long_section import long_section
+from ryusa.measure.long_section import Bed, long_section
 from ryusa.results import Results
 from ryusa.view.box import Floats
 
@@ -16,7 +16,7 @@ SECTION = "long_section"  # the word for it, beside those of `camera.VIEWS`
 
 
 def section_pictures(
-    results: Results, times: Floats, size: tuple[int, int], words: Callable[[float], str]
+    results: Results, times: Floats, size: tuple[int, int], words: Callable[[float], str], bed: Bed
 ) -> Callable[[int], Image.Image]:
     """What draws picture k of a film of the long section.
 
@@ -25,16 +25,18 @@ def section_pictures(
     times : of the pictures [s], shape (n_picture,); each shows the frame nearest to it.
     size : width and height [pixel].
     words : above a picture, given its time.
+    bed : what ends the bed, as of `measure.long_section`.
 
     Raises
     ------
+    CaseError : `bed` is no such word.
     ResultsError : the run has no row of columns.
     """
     if results.row is None:
         raise ResultsError(f"{results.folder}: has no row of columns, whose long section could be shown")
     recorded = np.asarray(results.frames.t, dtype=np.float64)
     nearest = np.abs(recorded[:, None] - times).argmin(axis=0)
-    sections = {int(k): long_section(results, float(recorded[k])) for k in np.unique(nearest)}
+    sections = {int(k): long_section(results, float(recorded[k]), bed) for k in np.unique(nearest)}
     among, dpi = tuple(sections.values()), size[0] / style.PAGE
 
     def draw(k: int) -> Image.Image:
