@@ -28,7 +28,7 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
 
 def test_the_quick_level_takes_seconds():
     works = {one for name in NAMES for one in load(name).tasks(Plan(Level.QUICK, (1,)))}
-    assert sum(one.cost() for one in works) < 240.0  # core seconds, by rule of thumb
+    assert sum(one.cost() for one in works) < 260.0  # core seconds, by rule of thumb
 
 
 def test_the_standard_level_takes_about_an_hour_on_two_cores():
