@@ -107,12 +107,9 @@ def film(
             allowed = f"must be {SMALLEST[0]}x{SMALLEST[1]} to {LARGEST[0]}x{LARGEST[1]}"
             raise CaseError("size", f"{size[0]}x{size[1]}", allowed)
     if view == SECTION:
-        for key, value in (("colour", colour), ("follow", follow)):
-            if value is not None:
-                raise CaseError(key, value, "is of films of grains; a long section has none")
+        _left_out("is of films of grains; a long section has none", colour=colour, follow=follow)
         return _of_section(results, path, begin, end, frames, speed, fps, size, bed or "packed", progress)
-    if bed is not None:
-        raise CaseError("bed", bed, "is of films of long sections: view = 'long_section'")
+    _left_out("is of films of long sections: view = 'long_section'", bed=bed)
     needs_grains(results)
     one = _colouring(colour or "speed")
     if follow is not None and results.scene.traffic is not None:
@@ -144,6 +141,13 @@ def film(
 
     write(path, draw, len(made.times), fps)
     return made
+
+
+def _left_out(why: str, **given: object) -> None:
+    """Refuse parameters that are of another kind of film."""
+    for key, value in given.items():
+        if value is not None:
+            raise CaseError(key, value, why)
 
 
 def _of_section(
