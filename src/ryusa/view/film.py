@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from ryusa.errors import CaseError, ResultsError
 from ryusa.measure.long_section import Bed
@@ -128,19 +129,33 @@ def film(
         grain = "" if follow is None else f"   grain {follow}"
         return f"t = {t:.{digits}f} s   {made.speed:.3g} × real time{grain}"
 
-    title = str(results.case.get("title") or results.folder.resolve().name)
     gravity = results.scene_at(float(made.times[-1])).gravity
     longest = max((words(float(t)) for t in made.times), key=len)
-    around = margins(size, title, longest, look.camera, gravity, one, look.low, look.high, beyond)
+    around = margins(size, _title(results), longest, look.camera, gravity, one, look.low, look.high, beyond)
 
-    def draw(k: int):
+    def picture(k: int) -> Image.Image:
         t = float(made.times[k])
-        picture = around.around(painter.at(t), words(t))
-        progress((k + 1) / len(made.times))
-        return picture
+        return around.around(painter.at(t), words(t))
 
-    write(path, draw, len(made.times), fps)
+    return _written(path, picture, made, progress)
+
+
+def _written(
+    path: Path, picture: Callable[[int], Image.Image], made: Timing, progress: Callable[[float], None]
+) -> Timing:
+    """Write the pictures of a film, and tell how far it is."""
+
+    def draw(k: int) -> Image.Image:
+        drawn = picture(k)
+        progress((k + 1) / len(made.times))
+        return drawn
+
+    write(path, draw, len(made.times), made.fps)
     return made
+
+
+def _title(results: Results) -> str:
+    return str(results.case.get("title") or results.folder.resolve().name)
 
 
 def _left_out(why: str, **given: object) -> None:
@@ -157,20 +172,12 @@ def _of_section(
     """Write a film of the long section; parameters as of `film`."""
     made = _planned(results.frames.t[_window(results, begin, end)], frames, speed, fps)
     check(path, size, len(made.times))
-    title = str(results.case.get("title") or results.folder.resolve().name)
-    digits = _digits(made.speed / fps)
+    title, digits = _title(results), _digits(made.speed / fps)
     pictures = section_pictures(
         results, made.times, size, lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time",
         bed,
     )  # fmt: skip
-
-    def draw(k: int):
-        picture = pictures(k)
-        progress((k + 1) / len(made.times))
-        return picture
-
-    write(path, draw, len(made.times), fps)
-    return made
+    return _written(path, pictures, made, progress)
 
 
 def _colouring(word: str) -> Colouring:

@@ -13,13 +13,12 @@ from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.model.scene import Floats
 from ryusa.studies.validation import river_bands as bands
-from ryusa.studies.validation.river_impact import reflected_bore
+from ryusa.studies.validation.river_impact import ALONE, against_a_wall, reflected_bore
 from ryusa.study import Finding, Found, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import advance_row, row_at_rest
 
 G, RHO = 9.80665, 1000.0
-COMES, DEEP = 1.5, 0.03  # stream that a wall reflects: speed [m/s], depth [m]
 BY_SCHEME = [RowTerm.FALL, RowTerm.UPWIND, RowTerm.LATE, RowTerm.SURFACE]
 TIME = Axis("time", "s")
 
@@ -50,19 +49,13 @@ def sloshing() -> dict[str, Floats]:
 
 def bore() -> dict[str, Floats]:
     """A stream without friction against a wall: what it loses from 0.4 s on, and what the bore must [J/m]."""
-    dx, n = 0.005, 400
-    column = Column(z_low=0.0, dz=0.25, n=2, depth=DEEP, nu=1e-15, surface=SurfaceRule.VOLUME)
-    inlet = RowEnd(EndKind.DISCHARGE, discharge=COMES * DEEP, depth=DEEP)
-    row = ColumnRow(column, dx, np.zeros(n), G, inlet, RowEnd(EndKind.WALL))
-    now = row_at_rest(row, np.full(n, DEEP))
-    speeds = np.full_like(now.u, COMES)
-    speeds[-1] = 0.0
-    now = advance_row(row, replace(now, u=speeds), 0.4)
+    (h, u), (row, start) = ALONE, against_a_wall()
+    now = advance_row(row, start, 0.4)
     times = np.linspace(0.0, 0.4, 9)
     account = books(row, now, times)
     account -= account[0]
-    behind, celerity = reflected_bore(COMES, DEEP, G)
-    power = RHO * G * DEEP * (COMES + celerity) * (behind - DEEP) ** 3 / (4.0 * DEEP * behind)
+    behind, celerity = reflected_bore(u, h, G)
+    power = RHO * G * h * (u + celerity) * (behind - h) ** 3 / (4.0 * h * behind)
     return {"t": times, "lost": account[:, BY_SCHEME].sum(axis=1), "exact": power * times}
 
 
@@ -118,7 +111,7 @@ def judge(found: Found) -> Sequence[Finding]:
             Source("rho g q (h_2 - h_1)^3/(4 h_1 h_2), q relative to the bore"), TIME, Axis("lost", "J/m"),
             [Curve("row", wave["t"], wave["lost"])], [Curve("bore", wave["t"], wave["exact"])],
             [misfit("lost over exact", float(wave["lost"][-1] / wave["exact"][-1]), "-", bands.ENERGY_BORE)],
-            {"stream": f"{COMES:g} m/s, {DEEP:g} m deep", "segments": "5 mm, one cell, no friction"},
+            {"stream": f"{ALONE[1]:g} m/s, {ALONE[0]:g} m deep", "segments": "5 mm, one cell, no friction"},
         ),
         comparison(
             "energy-uniform", "Energy of uniform flow",

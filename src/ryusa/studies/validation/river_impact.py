@@ -14,7 +14,7 @@ from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import long_section, row_of
 from ryusa.measure.walls import walls
 from ryusa.model.column import Column
-from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
 from ryusa.model.scene import Floats
 from ryusa.results import Results
 from ryusa.studies.validation import river_bands as bands
@@ -54,10 +54,10 @@ def reflected_bore(u: float, h: float, g: float) -> tuple[float, float]:
     return r * h, u / (r - 1.0)
 
 
-def water_alone() -> dict[str, Floats]:
-    """Water that runs against a wall: depths `h` [m] at the places `x` before the wall [m], after 0.8 s.
+def against_a_wall() -> tuple[ColumnRow, RowState]:
+    """Water alone, without friction and in one layer, that begins to run against a wall at x = 2 m.
 
-    Frictionless, one layer, in segments of 5 mm.
+    Its depth and speed are those of `ALONE`, and its segments 5 mm long.
     """
     (h, u), dx, n = ALONE, 0.005, 400
     column = Column(z_low=0.0, dz=0.25, n=2, depth=h, nu=1e-15, surface=SurfaceRule.VOLUME)
@@ -66,8 +66,14 @@ def water_alone() -> dict[str, Floats]:
     now = row_at_rest(row, np.full(n, h))
     speeds = np.full_like(now.u, u)
     speeds[-1] = 0.0
-    now = advance_row(row, replace(now, u=speeds), 0.8)
-    return {"x": row.x - n * dx, "h": now.surface[row.inner], "t": np.array(0.8)}
+    return row, replace(now, u=speeds)
+
+
+def water_alone() -> dict[str, Floats]:
+    """Water against a wall: depths `h` [m] at the places `x` before the wall [m], after 0.8 s."""
+    row, start = against_a_wall()
+    now = advance_row(row, start, 0.8)
+    return {"x": row.x - row.n_segment * row.dx, "h": now.surface[row.inner], "t": np.array(0.8)}
 
 
 def _run(speed: float, seed: int) -> CaseRun:
