@@ -33,7 +33,6 @@ from ryusa.build.wall_checks import (
     refuse_idle_servos,
 )
 from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, walls_of, with_room, with_walls
-from ryusa.casefile.builders.schema import FromFile
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
@@ -128,7 +127,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     found = derived or derive(case)
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
-    key = key_of(case.build) if isinstance(case.build, FromFile) else "build"
+    key = key_of(case)
     reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
     refuse_overlaps(reach, key, case.motion.plane)
     walls = (*walls_of(case), *stream_walls(case))

@@ -1,6 +1,7 @@
 """Grains in a row of columns with ends: a bed along its bottom, and bottom and dams as walls for them."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,8 +9,10 @@ import numpy as np
 from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw, draw_laid
+from ryusa.build.table import first_grains
 from ryusa.build.walls import SolidWall, triangles
 from ryusa.casefile.builders.schema import StreamSection
+from ryusa.casefile.builders.table import bed_of_run
 from ryusa.casefile.builders.values import stream_cells, stream_count, stream_thickness
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
@@ -27,11 +30,14 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
 
     Planes `upstream`, which only holds grains, `downstream` where that end is a wall, and the side walls.
     """
-    keys, row, width = case.build, row_keys(case), width_of(case)
+    keys, width = case.build, width_of(case)
     assert isinstance(keys, StreamSection)
-    assert row is not None
     assert width is not None
-    points, rng = bottom_points(case), np.random.default_rng(case.seed)
+    points, ends = bottom_points(case), _ends(case, keys, width)
+    period = (math.inf, math.inf if keys.walls else width)
+    if (bed := bed_of_run(case)) is not None:
+        return replace(first_grains(case, bed.run, True), walls=ends, period=period)
+    rng = np.random.default_rng(case.seed)
     n = stream_count(case)
     sized = draw_laid(case, n, rng) if graded(case) else draw(case, n, rng)
     x = at_rest(n)
@@ -44,16 +50,20 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
         x[:, 0] += begin + (columns[at] - at) * pitch[0]
         low = np.asarray(begin + columns * pitch[0], dtype=np.float64)
         x[:, 2] += _highest(points, low, pitch[0])[at]
+    return Placement(d=sized, x=x, v=at_rest(n), omega=at_rest(n), walls=ends, period=period)
+
+
+def _ends(case: Case, keys: StreamSection, width: float) -> tuple[Wall, ...]:
+    """Planes at the ends of the stream and at its sides."""
+    row, points = row_keys(case), bottom_points(case)
+    assert row is not None
     ends = [Wall(SCREEN, (points[0][0], 0.0, 0.0), (1.0, 0.0, 0.0))]
     if row.downstream is not None and row.downstream.end == "wall":
         ends.append(Wall(END, (points[-1][0], 0.0, 0.0), (-1.0, 0.0, 0.0)))
     if keys.walls:
         ends.append(Wall("right", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
         ends.append(Wall("left", (0.0, width, 0.0), (0.0, -1.0, 0.0)))
-    return Placement(
-        d=sized, x=x, v=at_rest(n), omega=at_rest(n), walls=tuple(ends),
-        period=(math.inf, math.inf if keys.walls else width),
-    )  # fmt: skip
+    return tuple(ends)
 
 
 def _highest(points: tuple[tuple[float, float], ...], low: Floats, pitch: float) -> Floats:

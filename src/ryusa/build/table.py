@@ -1,5 +1,7 @@
 """First grains from a table, a file of another program or a frame of another run."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ryusa.build.placement import Placement, Wall
@@ -17,10 +19,23 @@ def table(case: Case, _derived: Derived) -> Placement:
 
     Its planes are walls of the scene, but for those that the case names itself.
     """
-    keys, grid = case.build, table_of(case)
+    keys = case.build
     assert isinstance(keys, FromFile)
+    found = first_grains(case, keys.folder if isinstance(keys, RunSection) else None, keys.allow_overlap)
+    return replace(found, period=period_of(case))
+
+
+def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
+    """The same without the period.
+
+    Parameters
+    ----------
+    run : folder of the run that they are of, as the case names it; None for a table.
+    allow_overlap : whether grains may overlap.
+    """
+    grid = table_of(case)
     assert grid is not None
-    key = key_of(keys)
+    key = key_of(case)
     if case.motion.plane:
         for name in ("vy", "wx", "wz"):
             if np.any(grid.column(name)):
@@ -46,19 +61,18 @@ def table(case: Case, _derived: Derived) -> Placement:
         fixed_groups=_groups([grid.group[row] for row in fixed]),
         free_groups=_groups([grid.group[row] for row in free]),
         walls=tuple(Wall(one.name, one.point, one.normal) for one in grid.planes if one.name not in own),
-        period=period_of(case),
         z_zero=grid.z_zero or 0.0,
-        allow_overlap=keys.allow_overlap,
+        allow_overlap=allow_overlap,
         names=tuple(labels),
-        notes=_notes(case, keys, grid),
+        notes=_notes(case, run, grid),
     )
 
 
-def _notes(case: Case, keys: FromFile, grid: GrainTable) -> tuple[str, ...]:
+def _notes(case: Case, run: str | None, grid: GrainTable) -> tuple[str, ...]:
     notes: list[str] = []
-    if isinstance(keys, RunSection):
-        notes.append(f"grains as in {keys.folder} at {grid.t:g} s; their contacts begin anew")
-    if case.water is not None and case.water.zero is None:
+    if run is not None:
+        notes.append(f"grains as in {run} at {grid.t:g} s; their contacts begin anew")
+    if case.water is not None and case.water.zero is None and case.build.kind != "stream":
         where = f"at z = {grid.z_zero:g} m, as in {grid.name}" if grid.z_zero is not None else "at z = 0"
         notes.append(f"zero of the water profile {where} (water.zero not given)")
     return tuple(notes)

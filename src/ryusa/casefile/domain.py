@@ -84,7 +84,7 @@ def check_domain(case: "Case", derived: "Derived") -> Iterator[CaseError]:
                 f"is set by builder '{case.build.kind}' itself; give it with builders 'table' and 'run' only",
             )
     if isinstance(case.build, FromFile):
-        yield from _against_file(case, case.build)
+        yield from _against_file(case)
     if case.motion.plane and case.domain.period_y is not None:
         yield CaseError("domain.period_y", case.domain.period_y, "has no effect in a plane scene")
     low, high = case.domain.low, case.domain.high
@@ -92,7 +92,7 @@ def check_domain(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         yield CaseError("domain.low", list(low), "must lie below domain.high in every direction")
 
 
-def _against_file(case: "Case", build: FromFile) -> Iterator[CaseError]:
+def _against_file(case: "Case") -> Iterator[CaseError]:
     """Find periods that contradict those of the file."""
     table = table_of(case)
     if table is None or table.period is None:
@@ -105,4 +105,4 @@ def _against_file(case: "Case", build: FromFile) -> Iterator[CaseError]:
                 f"domain.{key}", given, f"differs from {table.name}, which is {there}; leave it out"
             )
     if case.motion.plane and math.isfinite(table.period[1]):
-        yield CaseError(key_of(build), table.name, "is periodic in y, which a plane scene cannot be")
+        yield CaseError(key_of(case), table.name, "is periodic in y, which a plane scene cannot be")

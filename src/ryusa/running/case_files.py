@@ -38,10 +38,11 @@ def _plain(name: str) -> bool:
 def start_of(case: "Case") -> Callable[[], bytes] | None:
     """Table of the first grains of a case that starts from another run."""
     from ryusa.casefile.builders.schema import RunSection
-    from ryusa.casefile.builders.table import table_of
+    from ryusa.casefile.builders.table import bed_of_run, table_of
     from ryusa.formats.csv import csv_frame, csv_head
 
-    table = table_of(case) if isinstance(case.build, RunSection) else None
+    of_run = isinstance(case.build, RunSection) or bed_of_run(case) is not None
+    table = table_of(case) if of_run else None
     return None if table is None else lambda: csv_head(table) + csv_frame(table)
 
 

@@ -11,7 +11,18 @@ from ryusa.casefile.section import Section
 from ryusa.units import quantity
 
 
+class BedOfRunSection(Section):
+    """The bed that another run of builder 'stream' has left: its grains in one frame."""
+
+    run: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+    """Its folder, within the folder of the case."""
+    at: Moment | None = None
+    """Time of the frame, the nearest; the last frame when not given."""
+
+
 def _bed_kind(value: Any) -> str:
+    if isinstance(value, dict | BedOfRunSection):
+        return "<run>"
     if isinstance(value, str) and value.lower().endswith(".csv"):
         return "<file>"
     return "<points>" if isinstance(value, list | tuple) else "<thickness>"
@@ -20,7 +31,8 @@ def _bed_kind(value: Any) -> str:
 BedThickness = Annotated[
     Annotated[Length, Field(ge=0), Tag("<thickness>")]
     | Annotated[LineFile, Tag("<file>")]
-    | Annotated[LinePoints, Tag("<points>")],
+    | Annotated[LinePoints, Tag("<points>")]
+    | Annotated[BedOfRunSection, Tag("<run>")],
     Discriminator(_bed_kind),
 ]
 
@@ -240,8 +252,9 @@ class StreamSection(Section):
     bed: BedThickness = 0.0
     """Thickness of a bed along the bottom, settled to the concentration water.column.packed; it is laid loose
     and settles in the run. Or its thickness along the stream: pairs of x and thickness, straight between
-    them, or a CSV file with the header x [m],z [mm], z the thickness. None when not given: all grains come
-    from [[feeds]]."""
+    them, or a CSV file with the header x [m],z [mm], z the thickness. Or the grains of another run, such as
+    { run = "runs/settled" }, as they are there, so that the bed has settled before this run begins. None when
+    not given: all grains come from [[feeds]]."""
     begin: Length | None = None
     """Where the bed begins along x; when not given at the upper end, or at the first point of its
     thickness."""

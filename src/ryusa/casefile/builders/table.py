@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders.schema import FromFile, RunSection, TableSection
+from ryusa.casefile.builders.schema import BedOfRunSection, RunSection, TableSection
 from ryusa.casefile.files import contents, folder_of, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
@@ -26,12 +26,25 @@ def table_of(case: "Case") -> GrainTable | None:
     """Read the grains that a case names; None for other builders."""
     if isinstance(case.build, TableSection):
         return _table_of_file(case, case.build)
-    return _table_of_run(case, case.build) if isinstance(case.build, RunSection) else None
+    if isinstance(case.build, RunSection):
+        return _table_of_run(case, "build.folder", case.build.folder, case.build.at)
+    bed = bed_of_run(case)
+    return None if bed is None else _table_of_run(case, "build.bed.run", bed.run, bed.at)
 
 
-def key_of(build: FromFile) -> str:
-    """Key that names the file or folder."""
-    return "build.file" if isinstance(build, TableSection) else "build.folder"
+def bed_of_run(case: "Case") -> BedOfRunSection | None:
+    """The run from which builder 'stream' takes its bed; None where it lays one, or none."""
+    bed = case.build.bed if case.build.kind == "stream" else None
+    return bed if isinstance(bed, BedOfRunSection) else None
+
+
+def key_of(case: "Case") -> str:
+    """Key that names the file or folder of the first grains; "build" for builders that lay them."""
+    if isinstance(case.build, TableSection):
+        return "build.file"
+    if isinstance(case.build, RunSection):
+        return "build.folder"
+    return "build" if bed_of_run(case) is None else "build.bed.run"
 
 
 def period_of(case: "Case") -> tuple[float, float]:
@@ -69,25 +82,23 @@ def _read(kind: str, options: ReadOptions, path: Path, name: str, _changed: int,
     return read_grains(path, name, kind, options)
 
 
-def _table_of_run(case: "Case", build: RunSection) -> GrainTable:
-    """Read the frame; a run folder holds the grains that its own run started from."""
+def _table_of_run(case: "Case", key: str, name: str, at: float | None) -> GrainTable:
+    """Read the frame nearest to a time [s], or the last; a run folder holds what its own run started from."""
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, "build.folder", build.folder)
+    folder, path = folder_of(case), inside(case, key, name)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
-        return contents(case, "build.folder", schema.START, start, partial(_read, "csv", ReadOptions()))
+        return contents(case, key, schema.START, start, partial(_read, "csv", ReadOptions()))
     try:
         changed = (path / schema.PARTS).stat().st_mtime_ns
     except OSError:
-        raise CaseError(
-            "build.folder", build.folder, f"no such run folder in the folder of the case, {folder}"
-        ) from None
-    return _frame(path, build.folder, build.at, changed)
+        raise CaseError(key, name, f"no such run folder in the folder of the case, {folder}") from None
+    return _frame(path, key, name, at, changed)
 
 
 @lru_cache(maxsize=4)
-def _frame(path: Path, name: str, at: float | None, _changed: int) -> GrainTable:
+def _frame(path: Path, key: str, name: str, at: float | None, _changed: int) -> GrainTable:
     from ryusa.formats.grains import nearest_frame, table_of_frame
     from ryusa.results import Results
 
@@ -99,4 +110,4 @@ def _frame(path: Path, name: str, at: float | None, _changed: int) -> GrainTable
             raise ResultsError(f"{path}: holds clumps, and a frame gives single spheres only")
         return table_of_frame(run, len(run.frames) - 1 if at is None else nearest_frame(run, at))
     except ResultsError as error:
-        raise CaseError("build.folder", name, str(error)) from None
+        raise CaseError(key, name, str(error)) from None

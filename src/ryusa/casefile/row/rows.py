@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ryusa.casefile.builders.table import bed_of_run, table_of
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope
@@ -102,6 +103,14 @@ def _bed(case: "Case") -> list[ExplainRow]:
     if case.build.kind != "stream" or case.build.bed == 0.0:
         return [word("water", "bed at the start", "none", "build.bed not given: all grains come from feeds")]
     points, (begin, end) = bed_points(case), stream_span(case)
+    if (bed := bed_of_run(case)) is not None:
+        table = table_of(case)
+        assert table is not None
+        origin = (
+            f"mean from x = {begin:g} to {end:g} m; {table.n:,} grains as in {bed.run} at {table.t:.4g} s"
+        )
+        thick = sum(thick for _, thick in points[1:-1]) / len(points[1:-1])
+        return [number("water", "bed at the start", thick, "cm", origin)]
     origin = f"build.bed, from x = {begin:g} to {end:g} m, settled to the concentration {packed(case):g}"
     most, least = (f([thick for _, thick in points]) for f in (max, min))
     if most > least:

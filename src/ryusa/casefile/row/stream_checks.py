@@ -1,12 +1,14 @@
 """Checks of a row of columns with ends and grains: what builder "stream" needs, and where grains could go."""
 
+import math
 from collections.abc import Iterator
 from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders.schema import StreamSection
+from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
+from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.row.schema import RowSection
@@ -22,6 +24,7 @@ from ryusa.casefile.row.values import (
     walls_of_stream,
     width_of,
 )
+from ryusa.casefile.section import given
 from ryusa.casefile.traffic.schema import ExitSection
 from ryusa.casefile.traffic.values import corners_of
 from ryusa.errors import CaseError
@@ -45,7 +48,9 @@ def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
             "motion.plane", True, "must be false with builder 'stream', whose bottom and dams are walls in "
             "three dimensions; a narrow stream with build.walls = false is nearest to a plane",
         )  # fmt: skip
-    if not isinstance(build.bed, float | int):
+    if isinstance(build.bed, BedOfRunSection):
+        yield from _bed_of_run(case, build, build.bed)
+    elif not isinstance(build.bed, float | int):
         yield from _bed(case, build.bed)
     for name in ("upstream", "downstream"):
         if getattr(keys, name) is None:
@@ -59,10 +64,10 @@ def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     yield from _names(case, keys)
 
 
-def _bed(case: "Case", given: Points | str) -> Iterator[CaseError]:
+def _bed(case: "Case", line: Points | str) -> Iterator[CaseError]:
     """Find points of the thickness of the bed that do not follow one another, or lie below the bottom."""
     try:
-        points = line_points(case, "build.bed", given)
+        points = line_points(case, "build.bed", line)
     except CaseError as error:
         yield error
         return
@@ -78,6 +83,50 @@ def _bed(case: "Case", given: Points | str) -> Iterator[CaseError]:
                 "build.bed", f"x = {points[k][0]:g} m", f"must {what} in the row, from {low:g} to "
                 f"{high:g} m, or give build.{what}",
             )  # fmt: skip
+
+
+def _bed_of_run(case: "Case", build: StreamSection, bed: BedOfRunSection) -> Iterator[CaseError]:
+    """Find a run whose grains this stream cannot hold, or that are others, and keys without effect."""
+    for name in ("begin", "end", "gap", "jitter"):
+        if given(build, name):
+            yield CaseError(f"build.{name}", getattr(build, name), "has no effect on the bed of a run")
+    if case.grains.mixture:
+        yield CaseError(
+            "grains.mixture", None, "has no effect on the bed of a run, whose grains are of [grains]"
+        )
+    try:
+        table = table_of(case)
+    except CaseError as error:
+        yield error
+        return
+    assert table is not None
+    key = "build.bed.run"
+    if table.fixed.any() or not table.n:
+        what = "fixed grains" if table.n else "no grain"
+        yield CaseError(key, bed.run, f"holds {what}; must be a run of builder 'stream' with a bed")
+        return
+    low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
+    x, y, d = (table.column(name) for name in ("x", "y", "d"))
+    if x.min() < low or x.max() > high:
+        yield CaseError(
+            key, bed.run, f"has grains from x = {x.min():.4g} to {x.max():.4g} m; must lie in the row, from "
+            f"{low:g} to {high:g} m",
+        )  # fmt: skip
+    width, across = width_of(case), math.inf if table.period is None else table.period[1]
+    if table.period is not None and width is not None:
+        if math.isfinite(across) == build.walls:
+            kind = "periodic across" if math.isfinite(across) else "between side walls"
+            yield CaseError(key, bed.run, f"is {kind}; build.walls must be {str(not build.walls).lower()}")
+        elif not build.walls and not math.isclose(across, width, rel_tol=AGREE):
+            yield CaseError(key, bed.run, f"is {across:g} m wide; water.row.width must be the same")
+    if width is not None and build.walls and (y.min() < 0.0 or y.max() > width):
+        yield CaseError(key, bed.run, f"has grains up to y = {y.max():g} m; water.row.width is {width:g} m")
+    if "m" in table.columns:
+        density = float(table.column("m").sum() / (math.pi / 6.0 * d**3).sum())
+        if not math.isclose(density, case.grains.density, rel_tol=1.0e-6):
+            yield CaseError(
+                key, bed.run, f"has grains of {density:.6g} kg/m3; grains.density must be the same"
+            )
 
 
 def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:

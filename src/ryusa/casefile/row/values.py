@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ryusa.casefile.builders.schema import BedOfRunSection
+from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
@@ -160,7 +163,7 @@ def stream_span(case: "Case") -> tuple[float, float]:
     build, points = case.build, bottom_points(case)
     assert build.kind == "stream"
     if not isinstance(build.bed, float | int):
-        points = line_points(case, "build.bed", build.bed)
+        points = _bed_line(case, build.bed)
     return (
         points[0][0] if build.begin is None else build.begin,
         points[-1][0] if build.end is None else build.end,
@@ -173,10 +176,27 @@ def bed_points(case: "Case") -> Points:
     assert build.kind == "stream"
     if isinstance(build.bed, float | int):
         return (begin, build.bed), (end, build.bed)
-    line = line_points(case, "build.bed", build.bed)
+    line = _bed_line(case, build.bed)
     x, thick = np.array(line).T
     first, last = np.interp([begin, end], x, thick).tolist()
     return (begin, first), *(one for one in line if begin < one[0] < end), (end, last)
+
+
+def _bed_line(case: "Case", given: Points | str | BedOfRunSection) -> Points:
+    """Points of x and thickness [m] as given; of a run, those of its grains packed in each segment."""
+    if not isinstance(given, BedOfRunSection):
+        return line_points(case, "build.bed", given)
+    table, (x_low, dx, n) = table_of(case), segments_of(case)
+    assert table is not None
+    x, d = table.column("x"), table.column("d")
+    at = np.clip(((x - x_low) / dx).astype(np.int64), 0, n - 1)
+    per_area = 1.0 / (dx * (width_of(case) or math.inf) * packed(case))
+    thick = np.bincount(at, math.pi / 6.0 * d**3 * per_area, n)
+    first, last = (int(at.min()), int(at.max())) if len(at) else (0, 0)
+    middles = tuple((x_low + (i + 0.5) * dx, float(thick[i])) for i in range(first, last + 1))
+    return (
+        (x_low + first * dx, float(thick[first])), *middles, (x_low + (last + 1) * dx, float(thick[last])),
+    )  # fmt: skip
 
 
 def bed_over(case: "Case", x: Floats) -> Floats:

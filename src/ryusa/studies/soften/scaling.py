@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, FromFile
+from ryusa.casefile.builders.table import bed_of_run
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import derive
 from ryusa.casefile.row.values import water_alone
@@ -43,9 +44,9 @@ def refuse_if_not_softenable(case: "Case") -> None:
             "cannot be softened: a single impact follows closed forms; `ryusa design` prints its contact "
             "time and overlap over the stiffness",
         )  # fmt: skip
-    if isinstance(case.build, FromFile):
+    if isinstance(case.build, FromFile) or bed_of_run(case) is not None:
         raise CaseError(
-            "build.kind", case.build.kind,
+            "build.kind", "a bed of a run" if case.build.kind == "stream" else case.build.kind,
             "cannot be softened: its first grains are the same for every seed, so that scatter cannot be "
             "told from the effect of the stiffness; take a builder that places grains by the seed",
         )  # fmt: skip
