@@ -17,8 +17,9 @@ def test_the_slope_that_carries_a_known_transport_is_found() -> None:
         assert dam.slope_that_carries(even, 0.03, q_s(slope, 0.03)) == pytest.approx(slope)
 
 
-def test_every_case_of_the_full_level_has_the_numbers_of_the_gate() -> None:
-    tasks = dam.tasks(Plan(Level.FULL, (1,)))
+@pytest.mark.parametrize("dams", dam.ALL, ids=lambda dams: dams.name)
+def test_every_case_of_the_full_level_has_the_numbers_of_the_gate(dams: dam.Dams) -> None:
+    tasks = dams.tasks()
     rates = list[float]()
     for one in tasks:
         case = read(case_path(f"validation/{one.case}.toml"), dict(one.overrides))
@@ -29,12 +30,19 @@ def test_every_case_of_the_full_level_has_the_numbers_of_the_gate() -> None:
             continue
         row = case.water.row
         assert row.width == dam.WIDTH
-        assert row.dams[0].height == dam.HIGH
+        assert row.dams[0].height == dams.high
+        assert row.dams[0].begin == dam.FACE
         assert row.upstream is not None
-        assert row.upstream.discharge == (dam.DISCHARGE, "m2/s")
+        assert row.upstream.discharge == (dams.discharge, "m2/s")
         assert case.motion.slope == pytest.approx(dam.BOTTOM)
         assert case.feeds[0].rate is not None
         rates.append(case.feeds[0].rate[0])
-    assert rates == pytest.approx([share * dam.FEED for share in dam.SHARES], rel=1e-4)
-    assert len(tasks) == 6
+        assert case.stop.time is not None
+        assert case.record.settle < case.stop.time
+    assert rates == pytest.approx([share * dam.FEED for share in dams.shares], rel=1e-4)
+    assert len(tasks) == len(dams.shares) + len(dams.beds)
+
+
+def test_the_dams_belong_to_the_full_level_alone() -> None:
+    assert len(dam.tasks(Plan(Level.FULL, (1,)))) == 11
     assert not dam.tasks(Plan(Level.STANDARD, (1,)))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,15 +18,47 @@ from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, case_run, 
 
 DAM, EVEN = "filling_dam", "even_bed"
 CASES = DAM, EVEN
-FEED = 0.06  # the largest [kg/s]
-SHARES = (1.0, 0.5, 1.0 / 3.0)  # of it, one run each
-BEDS = ((0.075, 0.026), (0.05, 0.030), (0.0625, 0.0315))  # slope [-] and depth [m] of the even beds
-BOTTOM, HIGH, WIDTH, DISCHARGE, DENSITY = 0.11, 0.032, 0.032, 0.03, 2650.0  # of filling_dam.toml, in SI
+FEED = 0.06  # that of filling_dam.toml [kg/s]
+BOTTOM, WIDTH, DENSITY = 0.11, 0.032, 2650.0  # of filling_dam.toml, in SI
+FACE = 1.4  # where its dam begins [m]
 
 
-def _dam(share: float) -> CaseRun:
-    rate = {"feeds.0.rate": f"{share * FEED:g} kg/s"}
-    return case_run(case_path("validation/filling_dam.toml"), rate, seed=1)
+@dataclass(frozen=True)
+class Dams:
+    """Runs of one dam with different feeds, and the even beds that their slopes follow from."""
+
+    name: str
+    discharge: float  # [m2/s]
+    high: float  # height of the dam over the bottom [m]
+    shares: tuple[float, ...]  # of FEED, one run each
+    beds: tuple[tuple[float, float], ...]  # slope [-] and depth [m] of the even beds
+    differs: dict[str, str] = field(default_factory=dict[str, str])  # from filling_dam.toml
+
+    def dam(self, share: float) -> CaseRun:
+        """A run with a share of the feed."""
+        rate = {"feeds.0.rate": f"{share * FEED:g} kg/s"}
+        return case_run(case_path("validation/filling_dam.toml"), self.differs | rate, seed=1)
+
+    def tasks(self) -> list[CaseRun]:
+        """All of its runs."""
+        return [*(self.dam(share) for share in self.shares), *(even_bed(*one) for one in self.beds)]
+
+
+LOW = Dams("dam-slope", 0.03, 0.032, (1.0, 0.5, 1.0 / 3.0), ((0.075, 0.026), (0.05, 0.030), (0.0625, 0.0315)))
+# Two of these three deposits are shorter than the h/S in which their flow becomes normal (design/0028). With
+# less water, on a higher dam, those of the same two feeds are longer than 1.8 h/S.
+LONG = Dams(
+    "dam-slope-long", 0.0175, 0.04, (0.5, 1.0 / 3.0), ((0.08, 0.016), (0.055, 0.0195), (0.0675, 0.019)),
+    {
+        "water.row.upstream.discharge": "0.0175 m2/s",
+        "water.row.dams.0.height": "4 cm",
+        "build.bed": '[["0.51 m", "0 cm"], ["1.4 m", "4 cm"]]',  # a slope of 0.065
+        "water.row.surface": '[["0 m", "2 cm"], ["1.475 m", "6 cm"], ["1.6 m", "2 cm"]]',
+        "stop.time": "55 s",
+        "record.settle": "40 s",
+    },
+)  # fmt: skip
+ALL = LOW, LONG
 
 
 def even_bed(slope: float, depth: float) -> CaseRun:
@@ -35,10 +68,8 @@ def even_bed(slope: float, depth: float) -> CaseRun:
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Three dams and three even beds, at the full level alone: half an hour and two minutes each."""
-    if plan.level is not Level.FULL:
-        return []
-    return [*(_dam(share) for share in SHARES), *(even_bed(*one) for one in BEDS)]
+    """Five dams and six even beds, at the full level alone: half an hour and two minutes each."""
+    return [one for dams in ALL for one in dams.tasks()] if plan.level is Level.FULL else []
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
@@ -77,46 +108,49 @@ def slope_that_carries(even: Sequence[tuple[float, float, float, float]], q: flo
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Slopes at three feeds, and the volumes that follow from them."""
-    if plan.level is not Level.FULL:
-        return []
+    """Slopes at each feed, and the volumes that follow from them."""
+    return [_judged(found, dams) for dams in ALL] if plan.level is Level.FULL else []
+
+
+def _judged(found: Found, dams: Dams) -> Finding:
     even = [
         (float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"]))
-        for e in (found[even_bed(*one)] for one in BEDS)
+        for e in (found[even_bed(*one)] for one in dams.beds)
     ]
-    dams = [found[_dam(share)] for share in SHARES]
-    q_s = [share * FEED / (DENSITY * WIDTH) for share in SHARES]
-    expected = [slope_that_carries(even, DISCHARGE, one) for one in q_s]
-    slopes = [float(one["slope"]) for one in dams]
+    runs = [found[dams.dam(share)] for share in dams.shares]
+    q_s = [share * FEED / (DENSITY * WIDTH) for share in dams.shares]
+    expected = [slope_that_carries(even, dams.discharge, one) for one in q_s]
+    slopes = [float(one["slope"]) for one in runs]
     # tan of what the bottom falls more than the deposit; P is normal to the bottom
     fall = [math.tan(math.atan(BOTTOM) - math.atan(slope)) for slope in expected]
-    volumes = [0.5 * HIGH**2 / one for one in fall]
-    errors = [misfit("grains missing", max(float(one["missing"]) for one in dams), "m2", bands.DAM_KEPT)]
-    for share, slope, own, one, volume in zip(SHARES, expected, slopes, dams, volumes, strict=True):
+    volumes = [0.5 * dams.high**2 / one for one in fall]
+    errors = [misfit("grains missing", max(float(one["missing"]) for one in runs), "m2", bands.DAM_KEPT)]
+    for share, slope, own, one, volume in zip(dams.shares, expected, slopes, runs, volumes, strict=True):
         name = f"feed {share:.2f}"
         errors.append(misfit(f"slope over that of even beds, {name}", own / slope, "-", bands.DAM_SLOPE))
         errors.append(misfit(f"volume over P^2/(2 (S_0 - S)), {name}", float(one["volume"]) / volume, "-",
                              bands.DAM_VOLUME))  # fmt: skip
-    names = [f"feed {share:.2f}" for share in SHARES]
-    ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, dams, strict=True)]
-    face = 1.4
-    x = np.linspace(0.4, face, 101)
+    names = [f"feed {share:.2f}" for share in dams.shares]
+    ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, runs, strict=True)]
+    x = np.linspace(0.0 if dams is LONG else 0.4, FACE, 101)
     theory = [
-        Curve(name, x, 1e3 * np.maximum(HIGH - (face - x) * one, 0.0))
+        Curve(name, x, 1e3 * np.maximum(dams.high - (FACE - x) * one, 0.0))
         for name, one in zip(names, fall, strict=True)
     ]
     said = "; ".join(
         f"{name}: slope {own:.4f} +- {float(one['error']):.4f}, of even beds {slope:.4f}, passes "
         f"{float(one['passes']):.3f} of what comes"
-        for name, own, slope, one in zip(names, slopes, expected, dams, strict=True)
+        for name, own, slope, one in zip(names, slopes, expected, runs, strict=True)
     )
     beds = "; ".join(f"S {s:.4f}, q {1e4 * q:.0f}, q_s {1e4 * g:.2f} cm2/s" for s, q, g, _ in even)
-    return [
-        comparison(
-            "dam-slope", "The deposit behind a dam",
-            Source("slope at which the flow over even beds carries the feed; V = P^2/(2 (S_0 - S))"),
-            Axis("distance", "m"), Axis("height of the bed over the bottom", "mm"), ours, theory, errors,
-            {"case": "validation/filling_dam.toml", "q": "0.03 m2/s", "feeds": "7.1, 3.5, 2.4 cm2/s"},
-            f"{said}. Even beds: {beds}.",
-        )
-    ]  # fmt: skip
+    feeds = ", ".join(f"{1e4 * one:.1f}" for one in q_s)
+    return comparison(
+        dams.name, f"The deposit behind a dam of {100.0 * dams.high:.2g} cm",
+        Source("slope at which the flow over even beds carries the feed; V = P^2/(2 (S_0 - S))"),
+        Axis("distance", "m"), Axis("height of the bed over the bottom", "mm"), ours, theory, errors,
+        {
+            "case": "validation/filling_dam.toml", "q": f"{dams.discharge:g} m2/s",
+            "feeds": f"{feeds} cm2/s",
+        },
+        f"{said}. Even beds: {beds}.",
+    )  # fmt: skip

@@ -110,7 +110,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """The rise of the bed against linear theory."""
     if plan.level is not Level.FULL:
         return []
-    even = [found[dam.even_bed(*one)] for one in dam.BEDS]
+    even = [found[dam.even_bed(*one)] for one in dam.LOW.beds]
     points = [(float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"])) for e in even]
     q_s, derivative, error = exner.transport_slope(points, SLOPE, DISCHARGE).tolist()
     flow = even[-1]  # that of the slope and nearly the discharge of the case
