@@ -8,8 +8,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
-from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import is_hertz, timing
+from ryusa.casefile.contact.resolved import resolved_contact
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
@@ -24,18 +23,7 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
     found = derived or derive(case)
     data["grains"] |= {"diameter": found.d, "sieve_curve": points_of(case)}
-    data["contact"]["timing"] = timing(case).word
-    if is_hertz(case):
-        data["contact"]["expected_speed"] = expected_speed(case)[0]
-    else:
-        data["contact"] |= {
-            "stiffness": found.k_n,
-            "shear_stiffness": found.k_s,
-            "shear_ratio": found.k_s / found.k_n,
-        }
-    data["contact"] |= {"friction": found.mu, "friction_angle": math.atan(found.mu)}
-    if not math.isnan(found.e_n):
-        data["contact"] |= {"restitution": found.e_n, "restitution_shear": found.e_s}
+    data["contact"] = resolved_contact(case)
     data["motion"] |= {"slope": math.tan(found.slope), "slope_angle": found.slope}
     data["motion"]["slab_width"] = slab_width(case)
     data["record"]["events"] = events_of(case)
@@ -95,6 +83,9 @@ def _resolve_row(case: Case, data: dict[str, Any]) -> None:
     """
     row, (_, dx, n) = data["row"], segments_of(case)
     row |= {"segments": n, "segment": dx}
+    for end in (row["upstream"], row["downstream"]):
+        if end is not None and end["run"] is None:
+            del end["run"]  # as in cases of earlier versions
     row["bottom"] = [list(one) for one in bottom_points(case)]
     if row["surface"] is not None:
         row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
