@@ -7,6 +7,7 @@ import numpy as np
 
 from ryusa.build.column import column_of
 from ryusa.build.placement import Placement
+from ryusa.build.reach import reach_end
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.packed import packed
@@ -14,6 +15,8 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.reach import END
+from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import RowEndSection, row_keys
 from ryusa.casefile.row.values import (
     RowPlan,
@@ -129,6 +132,8 @@ def _column(case: Case, derived: Derived, plan: RowPlan) -> Column:
 def _end(case: Case, end: RowEndSection | None) -> RowEnd | None:
     if end is None:
         return None
+    if (reach := reach_of(case)) is not None and end.end == END:
+        return reach_end(case, reach)
     kind = _KINDS[end.end]
     if kind is not EndKind.DISCHARGE:
         return RowEnd(kind, level=math.nan if end.level is None else end.level)

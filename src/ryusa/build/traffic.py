@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build.placement import Placement, at_rest
+from ryusa.build.reach import reach_feed
 from ryusa.build.sizes import draw
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grains import mass, sized_as
 from ryusa.casefile.materials import of_material
+from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import fed_count, feed_end
 from ryusa.errors import CaseError
@@ -34,7 +36,7 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
     ------
     CaseError : the builder already uses the name of a feed.
     """
-    if not case.feeds and not case.exits:
+    if not case.feeds and not case.exits and not fed_by_reach(case):
         return placement, None
     taken = placement.groups()
     n_first = first = len(placement.d)
@@ -50,10 +52,17 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
         sizes.append(d)
         centres.append(np.tile(_middle(keys), (len(d), 1)))
         first += len(d)
+    arrivals = None
+    if (found := reach_feed(case, len(feeds), first)) is not None:
+        feed, arrivals, d = found
+        feeds.append(feed)
+        sizes.append(d)
+        centres.append(np.tile(0.5 * (np.array(feed.low) + np.array(feed.high)), (len(d), 1)))
+        first += len(d)
     n = first - n_first
     traffic = Traffic(
         tuple(feeds), tuple(_exit(case, one) for one in case.exits),
-        steps_between(feeds, derived.d_min, derived.g, derived.dt), n_first,
+        steps_between(feeds, derived.d_min, derived.g, derived.dt), n_first, arrivals,
     )  # fmt: skip
     groups = tuple((one.name, one.first, one.count) for one in feeds if one.count)
     return replace(

@@ -184,6 +184,8 @@ def refuse_full_feeds(case: Case, scene: Scene) -> None:
     for k, feed in enumerate(traffic.feeds):
         if not feed.count or feed.wall != NONE:  # one that moves may begin anywhere
             continue
+        if traffic.arrivals is not None and traffic.arrivals.feed == k:  # each grain has its place
+            continue
         d = float(scene.d[feed.first : feed.first + feed.count].max())
         places = _places(feed, scene.plane_case, d, np.random.default_rng([_STREAM, k]))
         taken = _taken(still, places, d, feed.begin)

@@ -23,6 +23,7 @@ from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
 from ryusa.casefile.row.checks import check_row
 from ryusa.casefile.row.hydrograph import check_hydrograph
+from ryusa.casefile.row.reach_checks import check_reach, check_unlike_reach
 from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
@@ -53,7 +54,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     if case.build.kind == "stream" and row_keys(case) is None:
         text = "needs [water.row], whose bottom is the floor of its grains; without it take another builder"
         return [*_rivals(case), CaseError("build.kind", "stream", text)]
-    unsized = [*check_grading(case), *check_sizes(case), *check_shape(case)]
+    unsized = [*check_grading(case), *check_sizes(case), *check_shape(case), *check_reach(case)]
     if unsized:  # most checks need the sizes
         return [*_rivals(case), *unsized]
     found = [
@@ -76,7 +77,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_materials(case),
         *check_precision(case),
     ]
-    found = found or [*check_expected_speed(case)]
+    found = found or [*check_expected_speed(case), *check_unlike_reach(case)]
     if found:
         return found
     derived = derive(case)

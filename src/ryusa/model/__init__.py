@@ -9,12 +9,13 @@ from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
-from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic, with_momentum
+from ryusa.model.traffic import PASSAGE, Arrivals, Exit, Feed, Traffic, with_momentum
 from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [
     "EVENT",
     "PASSAGE",
+    "Arrivals",
     "BodyState",
     "Budget",
     "Column",

@@ -58,8 +58,9 @@ class Feed:
     name : of the feed; `Scene.groups` gives the ids of its grains under this name.
     low, high : corners of a box [m]; nan for a disc.
     centre, normal, radius : of a disc [m]; nan for a box. `normal` has length 1.
-    velocity : of every grain that enters [m/s].
-    rate : grains or kilograms in a second; 0 where only grains that have left come in.
+    velocity : of every grain that enters [m/s]; of a feeder reach, that of its fastest grain.
+    rate : grains or kilograms in a second; 0 where only grains that have left come in; of a feeder reach,
+        the mean.
     by_mass : whether `rate` is in kg/s.
     begin, end : when grains of its own are due [s].
     first, count : ids of its own grains, first to first + count - 1, in the order in which they are due.
@@ -142,20 +143,45 @@ class Exit:
 
 
 @dataclass(frozen=True)
+class Arrivals:
+    """When, where and how the grains of one feed come in, each by itself: those of a feeder reach.
+
+    They enter at the upper end of a row of columns, in its box, and count their heights from the bed there.
+
+    Attributes
+    ----------
+    feed : number of the feed, whose grains are these in the order of their ids.
+    t : when each is due [s], ascending, shape (n,).
+    y : place across the row [m], shape (n,).
+    height : of its centre over the bed, along z [m], shape (n,).
+    v, omega : velocity [m/s] and spin [rad/s], shape (n, 3).
+    """
+
+    feed: int
+    t: Floats
+    y: Floats
+    height: Floats
+    v: Floats
+    omega: Floats
+
+
+@dataclass(frozen=True)
 class Traffic:
     """Feeds and exits of a scene.
 
     Attributes
     ----------
-    feeds, exits : in the order of the case.
+    feeds, exits : in the order of the case; the feed of a feeder reach is the last.
     interval : steps between two instants at which grains enter and leave.
     n_first : grains that are there from the start, ids 0 to n_first - 1.
+    arrivals : of the grains of a feeder reach; None without one.
     """
 
     feeds: tuple[Feed, ...] = ()
     exits: tuple[Exit, ...] = ()
     interval: int = 1
     n_first: int = 0
+    arrivals: Arrivals | None = None
 
     @property
     def moves(self) -> bool:
@@ -163,13 +189,14 @@ class Traffic:
         return any(one.wall != NONE for one in (*self.feeds, *self.exits))
 
     @staticmethod
-    def from_data(data: dict[str, Any]) -> "Traffic":
-        """The inverse of `dataclasses.asdict`, from numbers as JSON gives them."""
+    def from_data(data: dict[str, Any], arrivals: Arrivals | None = None) -> "Traffic":
+        """The inverse of `dataclasses.asdict` but for arrivals, from numbers as JSON gives them."""
         return Traffic(
             feeds=tuple(Feed(**_values(one)) for one in data["feeds"]),
             exits=tuple(Exit(**_values(one)) for one in data["exits"]),
             interval=int(data["interval"]),
             n_first=int(data["n_first"]),
+            arrivals=arrivals,
         )
 
 
@@ -211,4 +238,6 @@ class Population:
             own = slice(feed.first, feed.first + feed.count)
             mine = feed.first + np.flatnonzero(heads[own])
             due[mine], feeds[own] = replace(feed, first=0, count=len(mine)).due(m[mine]), k
+            if traffic.arrivals is not None and traffic.arrivals.feed == k:
+                due[mine] = traffic.arrivals.t
         return Population(status, due, feeds)

@@ -13,7 +13,7 @@ from ryusa.errors import ResultsError
 from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
-from ryusa.model.traffic import NONE, Traffic
+from ryusa.model.traffic import NONE, Arrivals, Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 from ryusa.results.row_file import ROW, dataset_names, row_arrays, row_from, row_scalars
@@ -23,6 +23,8 @@ _TRAFFIC, _MATERIALS = (
     "materials",
 )  # left out where a scene has none: digests of earlier versions stay
 _BODIES = "bodies"
+_ARRIVALS = "arrivals"
+_OF_ARRIVALS = tuple(f.name for f in fields(Arrivals) if f.name != "feed")
 _OF_BODIES = tuple(f.name for f in fields(RigidBodies) if f.name != "names")
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
@@ -43,6 +45,8 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         file.create_dataset(f"{_BODIES}/{name}", data=getattr(scene.bodies, name))
     for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
         file.create_dataset(f"{ROW}/{name}", data=array)
+    for name, array in _arrays_of_arrivals(scene.traffic).items():
+        file.create_dataset(f"{_ARRIVALS}/{name}", data=array)
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -80,6 +84,8 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for one in (*found.get(_TRAFFIC, {}).get("feeds", ()), *found.get(_TRAFFIC, {}).get("exits", ())):
         if one["wall"] == NONE:  # as before any moved with a wall: the digest stays
             del one["wall"]
+    if (arrivals := found.get(_TRAFFIC, {}).pop(_ARRIVALS, None)) is not None:
+        found[_TRAFFIC][_ARRIVALS] = arrivals["feed"]  # its arrays are datasets
     walls: Walls | None = found.pop("walls")
     return found if walls is None else found | {"walls": list(walls.names)}
 
@@ -96,6 +102,13 @@ def _datasets_of_bodies(bodies: RigidBodies | None) -> tuple[str, ...]:
     return _OF_BODIES if len(bodies.drag_form) else tuple(name for name in _OF_BODIES if name != "drag_form")
 
 
+def _arrays_of_arrivals(traffic: Traffic | None) -> dict[str, np.ndarray]:
+    """Arrays of the grains of a feeder reach by the name of their dataset; none without one."""
+    if traffic is None or traffic.arrivals is None:
+        return {}
+    return {name: getattr(traffic.arrivals, name) for name in _OF_ARRIVALS}
+
+
 def scene_digest(scene: Scene) -> str:
     """Digest of all numbers of a scene; the same before writing and after reading."""
     digest = hashlib.sha256()
@@ -110,6 +123,9 @@ def scene_digest(scene: Scene) -> str:
     for name in _datasets_of_bodies(scene.bodies):
         digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
     for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
+        digest.update(f"{name} {array.shape} ".encode())
+        digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
+    for name, array in _arrays_of_arrivals(scene.traffic).items():
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
@@ -149,6 +165,11 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             for name in dataset_names()
             if f"{ROW}/{name}" in file
         }
+        listed = {
+            name: read_dataset(file, f"{_ARRIVALS}/{name}", path)
+            for name in _OF_ARRIVALS
+            if _ARRIVALS in file
+        }
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -158,7 +179,7 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             name: _law(kind, raw) for name, kind in _LAWS.items() if (raw := scalars.pop(name)) is not None
         }
         if _TRAFFIC in scalars:
-            scalars[_TRAFFIC] = Traffic.from_data(scalars[_TRAFFIC])
+            scalars[_TRAFFIC] = _traffic(scalars[_TRAFFIC], listed)
         if _MATERIALS in scalars:
             scalars[_MATERIALS] = _materials(of, scalars[_MATERIALS])
         if (forms := scalars.pop(_BODIES, None)) is not None:
@@ -200,6 +221,21 @@ def _materials(of: np.ndarray, raw: dict[str, Any]) -> Materials:
         raise ValueError(f"{len(names)} materials have {len(contact)} contact laws")
     of.flags.writeable = False
     return Materials(names, of, contact, rolling)
+
+
+def _traffic(raw: dict[str, Any], arrays: dict[str, np.ndarray]) -> Traffic:
+    """Feeds and exits; the arrays of a feeder reach place grains and are therefore checked."""
+    if _ARRIVALS not in raw:
+        return Traffic.from_data(raw)
+    arrivals = Arrivals(int(raw[_ARRIVALS]), **arrays)
+    traffic = Traffic.from_data(raw, arrivals)
+    n = traffic.feeds[-1].count if arrivals.feed == len(traffic.feeds) - 1 else -1
+    for name, array in arrays.items():
+        wanted = (n, 3) if name in {"v", "omega"} else (n,)
+        if array.shape != wanted or array.dtype != np.float64 or not np.isfinite(array).all():
+            raise ValueError(f"{_ARRIVALS}/{name} has shape {array.shape}, expected {wanted} finite numbers")
+        array.flags.writeable = False
+    return traffic
 
 
 def _bodies(arrays: dict[str, np.ndarray], names: list[str], n_grain: int) -> RigidBodies:

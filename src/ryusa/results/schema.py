@@ -13,6 +13,7 @@ FORMAT = 2  # raised when an older reader could misread a folder
 
 CASE_TOML = "case.toml"  # the case as read, byte for byte
 START = "start.csv"  # grains of another run, where the case starts from its frame
+REACH = "reach.json"  # what a river takes from its feeder reach
 SIEVE = "sieve.csv"  # sieve curve of the grains, where the case names a file
 CASE_JSON = "case.json"  # the same, resolved, in SI
 PROVENANCE = "provenance.json"

@@ -1,9 +1,9 @@
 """What a run folder keeps of a case beside its text: the first grains, and the words of its timeline."""
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -35,15 +35,40 @@ def _plain(name: str) -> bool:
     return inside and path.suffix not in taken and path.parts[0] not in {"parts", "pictures"}
 
 
-def start_of(case: "Case") -> Callable[[], bytes] | None:
-    """Table of the first grains of a case that starts from another run."""
+def made_files(case: "Case") -> dict[str, bytes]:
+    """What a case takes from other runs, by the names under which its run folder keeps it.
+
+    The table of the first grains, where it starts from another run, and what a feeder reach supplies.
+    """
     from ryusa.casefile.builders.schema import RunSection
     from ryusa.casefile.builders.table import bed_of_run, table_of
+    from ryusa.casefile.row.reach_source import reach_of
     from ryusa.formats.csv import csv_frame, csv_head
+    from ryusa.results import schema
 
+    found = dict[str, bytes]()
     of_run = isinstance(case.build, RunSection) or bed_of_run(case) is not None
     table = table_of(case) if of_run else None
-    return None if table is None else lambda: csv_head(table) + csv_frame(table)
+    if table is not None:
+        found[schema.START] = csv_head(table) + csv_frame(table)
+    if (reach := reach_of(case)) is not None:
+        found[schema.REACH] = reach.to_bytes()
+    return found
+
+
+def origin_of_reach(made: Mapping[str, bytes]) -> dict[str, Any]:
+    """The feeder reach in the provenance of a river: its run folder, window, and digest of what was taken.
+
+    made : as `made_files` gives it; without a feeder reach there is nothing to say.
+    """
+    from ryusa.casefile.row.reach import FeederReach, digest_of
+    from ryusa.results import schema
+
+    if (content := made.get(schema.REACH)) is None:
+        return {}
+    reach = FeederReach.from_bytes(content)
+    about = {"run": reach.name, "begin": reach.begin, "end": reach.end}
+    return {"feeder_reach": about | {"sha256": digest_of(content)}}
 
 
 def timeline_texts(case: "Case") -> list[str]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.casefile.earlier import completed
+from ryusa.casefile.row.reach import END, NAME
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.model import Scene, State
 from ryusa.results import schema
@@ -143,6 +144,9 @@ def _other_feeds(scene: Scene, case: Mapping[str, Any]) -> list[str]:
     """Feeds whose grains were drawn for another end than that of a case, as case.json holds it."""
     stop = (case.get("stop") or {}).get("time")
     ends = {one["name"]: (one.get("end"), stop) for one in case.get("feeds") or () if one.get("rate")}
+    row = (case.get("water") or {}).get("row") or {}
+    if (row.get("upstream") or {}).get("end") == END:
+        ends[NAME] = (None, stop)
     found: list[str] = []
     for feed in scene.traffic.feeds if scene.traffic is not None else ():
         end = min((float(one) for one in ends.get(feed.name, ()) if one is not None), default=feed.end)

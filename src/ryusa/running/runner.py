@@ -18,7 +18,7 @@ from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
-from ryusa.running.case_files import files_beside, start_of, timeline_texts
+from ryusa.running.case_files import files_beside, made_files, origin_of_reach, timeline_texts
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
 from ryusa.running.disk import disk_errors, write_atomically
@@ -126,7 +126,7 @@ def run(
         about = _CaseData(
             resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
             disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
-            files=files_beside(case), start=start_of(case),
+            files=files_beside(case), made=made_files(case),
         )  # fmt: skip
         return _run_or_resume(
             make,
@@ -158,7 +158,7 @@ class _CaseData:
     overrides: dict[str, str] | None = None
     disk: _Disk | None = None
     files: Mapping[str, Path] = field(default_factory=dict[str, Path])  # copied beside the case, by name
-    start: Callable[[], bytes] | None = None  # first grains as a table, if they are those of another run
+    made: Mapping[str, bytes] = field(default_factory=dict[str, bytes])  # taken from other runs, by name
 
 
 @dataclass(frozen=True)
@@ -236,7 +236,7 @@ def _run_or_resume(
         origin = provenance.begin(
             threads=options.threads, seed=about.seed, engine=engine.name,
             overrides=about.overrides or {},
-        )  # fmt: skip
+        ) | origin_of_reach(about.made)  # fmt: skip
         resolved = as_read_back(about.resolved)
         identity = run_identity(
             origin, resolved, frames=frames, stop=stop, changes=[(one.at, one.what) for one in changes]
@@ -315,9 +315,9 @@ class _Run:
                 with disk_errors(self.folder):
                     copy.parent.mkdir(parents=True, exist_ok=True)
                     write_atomically(copy, path.read_bytes())
-        if self.about.start is not None:
+        for name, content in self.about.made.items():
             with disk_errors(self.folder):
-                write_atomically(self.folder / schema.START, self.about.start())
+                write_atomically(self.folder / name, content)
 
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
         """Run from the first step."""

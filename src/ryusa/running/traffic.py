@@ -15,6 +15,7 @@ from ryusa.model.arrays import Floats
 from ryusa.model.traffic import GONE, IN, NONE, PRESENT, WAITING, Population, Traffic
 from ryusa.model.wall_traffic import carrier_of, corners, speed_of_feed
 from ryusa.model.walls import BEGIN
+from ryusa.running.arrivals import arriving, listed
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.crossing import Surface, fall, leaving_at, of_heads
 from ryusa.running.insertion import (
@@ -131,7 +132,7 @@ class TrafficRule:
         leaving = leaving_at(self.traffic, scene, state, through, surface)
         state, events = removed(scene, state, leaving["grain"])
         self._let_go(leaving)
-        came, grains, x = self._find_places(scene, state, surface)
+        came, grains, x = self._find_places(scene, state, surface, water)
         if not len(leaving) and not len(came):
             return None
         if water is not None:
@@ -164,7 +165,7 @@ class TrafficRule:
             population.due[i] = math.inf if to == NONE else row["t"]
 
     def _find_places(
-        self, scene: Scene, state: State, surface: Surface
+        self, scene: Scene, state: State, surface: Surface, water: Coupling | RowCoupling | None = None
     ) -> tuple[np.ndarray, Entering, Floats]:
         """Find places for grains that are due, the longest waiting first, as far as there is room.
 
@@ -172,6 +173,7 @@ class TrafficRule:
         ----------
         state : without those that have just left.
         surface : height of the water of a column or a row.
+        water : column or row; grains of a feeder reach wait for the first step of a row.
 
         Returns
         -------
@@ -190,11 +192,16 @@ class TrafficRule:
         inside = wrapped(state.x, scene.period)
         for i in due.tolist():
             k = int(population.feed[i])
-            if failed[k] >= _FULL:
+            own = listed(self.traffic.arrivals, k)  # then one without room says nothing of the next
+            if (failed[k] >= _FULL and not own) or (own and not isinstance(water, RowCoupling)):
                 continue
             if k not in near:
                 near[k] = self._neighbours(scene, k, inside, t)
-            row, place, q = self._entering(scene, near[k], i, step, t, surface)
+            if own and isinstance(water, RowCoupling):
+                due_at = float(population.due[i])
+                (row, place), q = arriving(scene, water, near[k], i, step, t, due_at), _UPRIGHT
+            else:
+                row, place, q = self._entering(scene, near[k], i, step, t, surface)
             if place is None:
                 failed[k] += 1
                 continue

@@ -24,6 +24,7 @@ from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
+from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span, width_of
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
@@ -44,6 +45,8 @@ def sizes(case: "Case") -> tuple[float, float, float]:
     if table is not None:
         every = table.column("d")
         ranges.append((float(every[~table.fixed].min()), float(every.max())))
+    if (reach := reach_of(case)) is not None:
+        ranges.append((float(reach.d.min()), float(reach.d.max())))
     return reference_diameter(case), min(low for low, _ in ranges), max(high for _, high in ranges)
 
 

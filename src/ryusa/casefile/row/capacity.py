@@ -9,6 +9,7 @@ import numpy as np
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowDamSection, row_keys
 from ryusa.casefile.row.values import (
     bed_over,
@@ -88,8 +89,8 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     Behind the dam the bed takes the slope at which the flow carries the feed on, from the crest upstream to
     where it meets the bed of the start: V = P**2/(2 (S_0 - S)) behind a dam P high on a plane bed of slope
     S_0. Half a diameter of bed above or of room below that surface counts as none. No estimate is made for
-    the second dam below a feed, for one that lets water through, for a hydrograph, and for a feed beyond the
-    formula, of another material, or to which an exit leads.
+    the second dam below a feed, for one that lets water through, for a hydrograph or a feeder reach, and for
+    a feed beyond the formula, of another material, or to which an exit leads.
     """
     keys, width, plan = row_keys(case), width_of(case), row_plan(case)
     first = plan.x_low + dam_span(plan, dam)[0] * plan.dx
@@ -97,6 +98,7 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     back = {one.to for one in case.exits}
     odd = any(one.material is not None or one.name in back for _, one in feeds)
     odd = odd or any(one.discharge is not None for one in case.timeline)
+    odd = odd or fed_by_reach(case)
     if keys is None or width is None or dam.concentration is not None or not feeds or odd:
         return None
     start = max(at for at, _ in feeds)

@@ -9,6 +9,7 @@ import numpy as np
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.reach import END
 from ryusa.casefile.row.schema import RowDamSection, RowEndSection, RowSection, row_keys
 from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
@@ -21,6 +22,7 @@ from ryusa.casefile.row.values import (
     deepest,
     discharge_of,
     enters_fast,
+    inlet_depth,
     line_points,
     not_downstream,
     reaches,
@@ -262,7 +264,7 @@ def _ends(case: "Case", keys: RowSection) -> Iterator[CaseError]:
 
 def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
     key = f"water.row.{name}"
-    if end.end == "discharge" and name == "downstream":
+    if end.end in {"discharge", END} and name == "downstream":
         yield CaseError(
             f"{key}.end", end.end, f"can only be given upstream; {_OTHER_END.format('downstream')}"
         )
@@ -397,7 +399,7 @@ def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError
 def _inlet(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
     """A dry first segment gives no depth to an inlet that has none of its own and no bed to enter over."""
     end, q = keys.upstream, discharge_of(case)
-    if end is None or not q > 0.0 or end.depth is not None or plan.start[0] > plan.bottom[0]:
+    if end is None or not q > 0.0 or inlet_depth(case) is not None or plan.start[0] > plan.bottom[0]:
         return
     if bed_over(case, plan.x)[0] >= reference_diameter(case) or enters_fast(case, q):
         return

@@ -11,6 +11,8 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.hydrograph import hydrograph_rows
+from ryusa.casefile.row.reach_rows import reach_rows
+from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
@@ -26,6 +28,7 @@ from ryusa.casefile.row.values import (
     dam_span,
     discharge_of,
     fastest,
+    inlet_depth,
     least_discharge,
     peak_discharge,
     reaches,
@@ -131,10 +134,14 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
     if keys.upstream is not None and keys.upstream.discharge is not None:
         value, unit = keys.upstream.discharge
         origin += "" if unit == "m2/s" else f", {value:g} m3/s over a width of {width_of(case):g} m"
+    if (reach := reach_of(case)) is not None:
+        origin = f"of the feeder reach, mean from {reach.begin:g} to {reach.end:g} s"
+        origin += f"; {100.0 * reach.in_bed:.2g} % of it in its bed"
     rows = [
         number("water", "discharge", q, "m2/s", origin),
         number("water", "critical depth", critical_depth(case, q), "cm", "(q^2/(g cos(slope)))^(1/3)"),
         *hydrograph_rows(case),
+        *reach_rows(case),
     ]
     peak = peak_discharge(case)
     for more, each in (("", q), (", at the peak", peak))[: 2 if peak > q else 1]:
@@ -143,7 +150,7 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
             rows += _transport(case, one, each, more) if stream(case) else []
     least = least_discharge(case)
     thin, cell = reaches(case, least)[0], cell_of(case)
-    given = keys.upstream is not None and keys.upstream.depth is not None
+    given = inlet_depth(case) is not None
     if not given and thin.froude > 1.0 and thin.normal <= THINNEST * cell:
         origin = (
             f"normal depth of {least:.3g} m2/s, {100.0 * thin.normal:.3g} cm, is less than a cell of "

@@ -12,7 +12,7 @@ from ryusa.units import UnitError, quantity
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-End = Literal["wall", "level", "free fall", "same depth", "discharge"]
+End = Literal["wall", "level", "free fall", "same depth", "discharge", "feeder reach"]
 Discharge = tuple[float, Literal["m2/s", "m3/s"]]
 
 
@@ -62,7 +62,8 @@ class RowEndSection(Section):
 
     end: End
     """What lies beyond: a wall; water at rest with the surface at `level`; a drop without water; the depth of
-    the last segment, for flow that is uniform or faster than waves; or an inlet that keeps `discharge`."""
+    the last segment, for flow that is uniform or faster than waves; an inlet that keeps `discharge`; or a
+    reach over an even bed, the finished periodic `run`, that feeds water and grains."""
     level: Length | None = None
     """Height of the surface beyond end = "level", over the x axis."""
     discharge: RowDischarge | None = None
@@ -74,6 +75,10 @@ class RowEndSection(Section):
     profile: Literal["developed", "uniform"] = "developed"
     """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every
     height."""
+    run: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)] | None = None
+    """Run folder of end = "feeder reach", upstream alone, within the folder of the case: a finished run of a
+    periodic row over a moving bed. Discharge, profile and depth are its means after its record.settle; its
+    grains enter as they cross its downstream end, and its record is repeated where it is the shorter one."""
 
 
 class RowDamSection(Section):

@@ -11,6 +11,7 @@ from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
 from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.row.values import (
     Points,
@@ -173,7 +174,8 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     assert isinstance(build, StreamSection)
     low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
     begin, end = stream_span(case)
-    if build.bed == 0.0 and not any(feed.rate is not None for feed in case.feeds):
+    fed = fed_by_reach(case) or any(feed.rate is not None for feed in case.feeds)
+    if build.bed == 0.0 and not fed:
         yield CaseError(
             "build.bed", None, "gives no grain, and no feed brings one: give a thickness, or [[feeds]]"
         )

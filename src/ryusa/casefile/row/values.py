@@ -16,6 +16,7 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import Discharge, RowDamSection, RowSection, row_keys
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
@@ -108,6 +109,8 @@ def segments_of(case: "Case") -> tuple[float, float, int]:
 
 def discharge_of(case: "Case") -> float:
     """Discharge per width that enters upstream [m2/s]; nan where none is given."""
+    if (reach := reach_of(case)) is not None:
+        return reach.discharge
     end = _row(case).upstream
     if end is None or end.discharge is None:
         return math.nan
@@ -283,6 +286,28 @@ def enters_fast(case: "Case", q: float) -> bool:
     return first.froude > 1.0 and first.normal > THINNEST * cell_of(case)
 
 
+def inlet_tilt(case: "Case") -> float:
+    """Angle of the bottom at the upper end to the x axis, positive where it rises [rad]."""
+    (x, z), (x_next, z_next) = bottom_points(case)[:2]
+    return math.atan2(z_next - z, x_next - x)
+
+
+def inlet_depth(case: "Case") -> float | None:
+    """Depth of the water that enters, along z over a bed there [m]; None where it is that of the row."""
+    reach, end = reach_of(case), _row(case).upstream
+    if reach is None:
+        return None if end is None else end.depth
+    return reach.depth / math.cos(inlet_tilt(case)) if reach_froude(case) > 1.0 else None
+
+
+def reach_froude(case: "Case") -> float:
+    """Froude number of the mean flow of the feeder reach over its bed [-]; nan without one."""
+    reach = reach_of(case)
+    if reach is None:
+        return math.nan
+    return reach.discharge / math.sqrt(case.motion.gravity * math.cos(reach.slope) * reach.depth**3)
+
+
 def deepest(case: "Case", plan: RowPlan) -> float:
     """Largest depth to be expected [m]: at the start, of flow on the bed, behind dams, below levels."""
     keys, q = _row(case), peak_discharge(case)
@@ -303,8 +328,8 @@ def deepest(case: "Case", plan: RowPlan) -> float:
     for end, at in ((keys.upstream, plan.x[0]), (keys.downstream, plan.x[-1])):
         if end is not None and end.level is not None:
             found.append(float((end.level - tilt * (at - plan.x) - plan.bottom).max()))
-        if end is not None and end.depth is not None:
-            found.append(end.depth + float(bed[0]))
+    if (entering := inlet_depth(case)) is not None:
+        found.append(entering + float(bed[0]))
     return max((one for one in found if one > 0.0), default=0.0)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass, mean_cube, sized_as
+from ryusa.casefile.row.reach_source import fed_by_reach_in_all
 from ryusa.casefile.traffic.schema import FeedSection
 from ryusa.model.arrays import Floats
 from ryusa.model.wall_traffic import corners_of_disc
@@ -58,8 +59,8 @@ def fed_count(case: "Case", feed: FeedSection) -> int:
 
 
 def fed_in_all(case: "Case") -> int:
-    """Number of grains that all feeds bring."""
-    return sum(fed_count(case, feed) for feed in case.feeds)
+    """Number of grains that all feeds bring, that of a feeder reach too."""
+    return sum(fed_count(case, feed) for feed in case.feeds) + fed_by_reach_in_all(case)
 
 
 def share_filled(case: "Case", feed: FeedSection, rate: float) -> float:
