@@ -21,6 +21,7 @@ from ryusa.studies.validation import river_dam_break as over_bed
 from ryusa.studies.validation import river_delta as delta
 from ryusa.studies.validation import river_energy as energy
 from ryusa.studies.validation import river_exner as exner
+from ryusa.studies.validation import river_feeder as feeder
 from ryusa.studies.validation import river_grains as with_grains
 from ryusa.studies.validation import river_impact as impact
 from ryusa.studies.validation import river_overload as overload
@@ -193,7 +194,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
         *delta.tasks(plan),
         *exner.tasks(plan),
     ]
-    every += [*dam.tasks(plan), *overload.tasks(plan), *over_bed.tasks(plan)]
+    every += [*dam.tasks(plan), *overload.tasks(plan), *over_bed.tasks(plan), *feeder.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -243,6 +244,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         *dam.judge(found, plan),
         *overload.judge(found, plan),
         *over_bed.judge(found, plan),
+        *feeder.judge(found, plan),
     ]
 
 
