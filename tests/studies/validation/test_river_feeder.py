@@ -48,4 +48,4 @@ def test_reach_and_river_are_the_same_bed():
     assert (one.grains, one.contact, one.motion) == (other.grains, other.contact, other.motion)
     assert feeder.tasks(Plan(Level.STANDARD, (1,))) == []
     (task,) = feeder.tasks(PLAN)
-    assert task.cost() == 750.0
+    assert task.cost() == 460.0
