@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -310,3 +311,46 @@ def test_an_unfinished_reach_is_refused(tmp_path: Path, stop_at: Any) -> None:
     ryusa.run(read_text(EVEN), tmp_path / "runs" / "even", progress=False)
     with pytest.raises(CaseError, match="is not finished; `ryusa resume` continues it"):
         river(tmp_path)
+
+
+def test_what_comes_along_the_bed_of_the_reach_goes_along_an_inclined_bottom(place: Path) -> None:
+    tilt = -np.arctan2(0.03, 0.2)
+    case = river(place, {"water.row.bottom": "[['0 m', '3 cm'], ['0.2 m', '0 cm']]"})
+    reach, scene = reach_of(case), build(case).scene
+    assert reach is not None and scene.traffic is not None and scene.row is not None
+    arrivals, end = scene.traffic.arrivals, scene.row.upstream
+    assert arrivals is not None and end is not None
+    n = len(arrivals.t)
+    along = arrivals.v[:, 0] * np.cos(tilt) + arrivals.v[:, 2] * np.sin(tilt)
+    np.testing.assert_allclose(along, reach.v[:n, 0], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(arrivals.v, axis=1), np.linalg.norm(reach.v[:n], axis=1))
+    np.testing.assert_array_equal(arrivals.omega[:, 1], reach.omega[:n, 1])
+    np.testing.assert_allclose(arrivals.height, reach.height[:n] / np.cos(tilt))
+    assert end.depth == pytest.approx(reach.depth / np.cos(tilt)) and end.discharge == reach.discharge
+
+
+def test_between_side_walls_a_record_is_repeated_without_a_shift(place: Path) -> None:
+    case = river(place, {"stop.time": "0.7 s"})
+    reach = reach_of(case)
+    assert reach is not None
+    n = len(reach.t)
+    again = repeated(case, replace(reach, side_walls=True)).y[n:]
+    np.testing.assert_array_equal(again, reach.y[: len(again)])
+
+
+def test_grains_that_crept_in_the_bed_enter_on_a_bottom_without_one(place: Path, tmp_path: Path) -> None:
+    shutil.copytree(place / "runs" / "even", tmp_path / "runs" / "even")
+    bare = {
+        "build.bed": "0 cm",
+        "water.row.bottom": "[['0 m', '1 cm'], ['0.1 m', '0 cm'], ['0.2 m', '0 cm']]",
+    }
+    case = river(tmp_path, bare | {"water.row.height": "8 cm"})
+    reach, run = reach_of(case), ryusa.run(case, tmp_path / "runs" / "bare", progress=False)
+    assert reach is not None
+    assert (reach.height < -0.006).any()  # deeper than any grain of a bed of one layer
+    rows = run.passages[run.passages["way"] == IN]
+    assert len(rows) == int((reach.t < 0.3).sum())
+    steep = np.hypot(1.0, 0.1)
+    assert (rows["x"][:, 2] >= 0.01 - 0.1 * rows["x"][:, 0] + 0.5 * rows["d"] * steep).all()
+    there = run.frames.x[-1]
+    assert np.nanmin(there[:, 2]) > 0.0

@@ -1,5 +1,7 @@
 """Grains of a feeder reach: each enters at the upper end of a row by itself, over the bed that lies there."""
 
+import math
+
 import numpy as np
 
 from ryusa.model import PASSAGE, Scene
@@ -26,8 +28,8 @@ def arriving(
     Notes
     -----
     A grain that became due since the last instant is as far beyond the screen as its velocity along x has
-    brought it. Where a grain of the bed is in its way it is raised, up to the surface of the water; so what
-    creeps within the bed of the reach is not held back by a bed that lies otherwise here.
+    brought it. Where the bottom or a grain of the bed is in its way it is raised, up to the surface of the
+    water; so what creeps within the bed of the reach is not held back by a bed that lies otherwise here.
     """
     traffic = scene.traffic
     assert traffic is not None
@@ -42,7 +44,11 @@ def arriving(
     x = feed.low[0] + (0.5 + _CLEAR) * d
     if late < traffic.interval * scene.dt:
         x += max(float(arrivals.v[k, 0]), 0.0) * late
-    place = np.array([x, arrivals.y[k], water.bed_at_inlet(x) + arrivals.height[k]])
+    row_of_water = water.row
+    tilt = 2.0 * (float(row_of_water.bottom[0]) - feed.low[2]) / row_of_water.dx
+    floor = feed.low[2] + tilt * (x - row_of_water.x_low)
+    lowest = floor + (0.5 + _CLEAR) * d * math.hypot(1.0, tilt)
+    place = np.array([x, arrivals.y[k], max(floor + water.bed_at_inlet + arrivals.height[k], lowest)])
     surface = float(water.surface_at(np.array([x]))[0])
     for _ in range(ATTEMPTS):
         if near.free(place, d):

@@ -164,18 +164,13 @@ class RowCoupling:
         at = np.clip(np.floor((x - row.x_low) / row.dx), 0, row.n_segment - 1).astype(np.int64)
         return (row.bottom + self.state.surface[row.inner] - row.column.z_low)[at]
 
-    def bed_at_inlet(self, x: float) -> float:
-        """Height over z = 0, at a place near the upper end, of the bed over which water enters [m].
+    @property
+    def bed_at_inlet(self) -> float:
+        """Thickness of the bed in the first segment over which water enters (`row_inlet`) [m].
 
-        Notes
-        -----
-        Its thickness is that in the first segment, as at an inlet (`row_inlet`), at the last exchange.
+        It is that at the last exchange.
         """
-        row = self.row
-        b = row.bottom_with_ends()
-        tilt = 0.0 if row.n_segment == 1 else (b[2] - b[1]) / row.dx
-        thick = bed_thickness(parameters_of(row.column), np.ascontiguousarray(self.phi[0]))
-        return float(row.bottom[0] + tilt * (x - row.x[0]) + thick)
+        return bed_thickness(parameters_of(self.row.column), np.ascontiguousarray(self.phi[0]))
 
     def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
         """Raise a `GrainLost` for a grain beyond the ends of the row.
