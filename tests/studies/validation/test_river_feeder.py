@@ -43,8 +43,8 @@ def test_each_number_can_hold_and_can_be_missed(given, missed):
 
 
 def test_reach_and_river_are_the_same_bed():
-    one = read(case_path(f"validation/{feeder.REACH}.toml"), feeder.OF_REACH)
-    other = read(case_path(f"validation/{feeder.CASE}.toml"))
+    one = read(case_path(f"{feeder.REACH}.toml"))
+    other = read(case_path(f"{feeder.CASE}.toml"))
     assert (one.grains, one.contact, one.motion) == (other.grains, other.contact, other.motion)
     assert feeder.tasks(Plan(Level.STANDARD, (1,))) == []
     (task,) = feeder.tasks(PLAN)

@@ -63,8 +63,11 @@ ALL = LOW, LONG
 
 def even_bed(slope: float, depth: float) -> CaseRun:
     """A run over an even bed of a slope [-], begun with a depth of water [m] over it."""
-    more = {"motion.slope": f"{slope:g}", "water.depth": f"'{depth:g} m'"}
-    return case_run(case_path("validation/even_bed.toml"), more, seed=1)
+    more = {
+        "motion.slope": f"{slope:g}", "water.depth": f"'{depth:g} m'", "stop.time": "16 s",
+        "record.frames": "50 ms",
+    }  # fmt: skip
+    return case_run(case_path("even_bed.toml"), more, seed=1)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:

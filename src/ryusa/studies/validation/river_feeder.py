@@ -21,12 +21,6 @@ from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, 
 
 CASE, REACH = "fed_river", "even_bed"
 SEED = 1
-OF_REACH = {
-    "motion.slope": "0.0625",
-    "water.depth": "'3.15 cm'",
-    "stop.time": "'20 s'",
-    "record.frames": "'20 ms'",
-}
 FED = {"water.row.upstream": "{ end = 'feeder reach', run = 'reach' }"}
 JUDGED = 0.2, 0.8  # where the bed is judged: 25 diameters from the upper end, 12 from the sill [m]
 CORE = 8e-3, 24e-3  # heights between which the settled bed is dense [m]
@@ -48,9 +42,9 @@ def fed() -> dict[str, Floats]:
     KeyboardInterrupt : a run was stopped.
     """
     with TemporaryDirectory() as folder:
-        even = read(case_path(f"validation/{REACH}.toml"), {**OF_REACH, "seed": str(SEED)})
+        even = read(case_path(f"{REACH}.toml"), {"seed": str(SEED)})
         _whole(run(even, f"{folder}/reach", progress=False))
-        path = case_path(f"validation/{CASE}.toml")
+        path = case_path(f"{CASE}.toml")
         text = path.read_text(encoding="utf-8")
         case = read_text(text, {**FED, "seed": str(SEED)}, path=Path(folder) / path.name)
         reach = reach_of(case)
@@ -136,7 +130,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 misfit("q_s of the river over that of the reach", float(got["carried"])),
                 misfit("relative error of q_s of the reach", float(got["error"]) / q_s),
             ],
-            {"case": f"`validation/{CASE}`", "reach": f"`validation/{REACH}`"},
+            {"case": f"`ryusa new {CASE}`", "reach": f"`ryusa new {REACH}`"},
             f"The bed rises by {1e3 * rate:.3f} mm/s from {t[0]:g} to {t[-1]:g} s; if all of q_s came from "
             f"it, it would fall by {-1e3 * lost:.2f} mm/s. q_s {1e4 * q_s:.2f} cm2/s, "
             f"{float(got['due']):.0f} grains due, a bed of concentration {core:.3f}.",
