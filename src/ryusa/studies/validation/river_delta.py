@@ -20,7 +20,7 @@ SEEDS = (1, 2)
 CASES = DELTA, PILE = "delta", "pile"
 BEGIN, END = 30.0, 60.0  # when the deposit has its slope, and the front is short of the outlet [s]
 FLAT = 0.635  # where the floor of the pool begins to be level [m]
-LAST = 1.1  # the foot of the front must not come so far [m]
+LAST = 1.1  # frames in which the foot of the front has come farther are left out [m]
 THICK = 0.005  # of a deposit on the floor: one diameter [m]
 LIP = 0.08  # from the middle of the front upstream to the flux that feeds it [m]
 CORE = 0.015, 0.035  # heights between which the concentration of the deposit is taken [m]
@@ -49,7 +49,8 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     -------
     Of a pile the `angle` of its flanks at the end [deg]. Of a delta, for the frames `t` [s] from BEGIN on in
     which the foot of the front is on the level floor, its middle `front` and where the flux that comes to it
-    would have brought it, `expected` [m]; the mean `angle` of the front [deg]; the `core`, its concentration
+    would have brought it, `expected` [m]; the mean `angle` of the front [deg], of the frames in which two
+    segments or more lie in its flank; the `core`, its concentration
     [-]; and `missing`, what feeds brought, less what left and what is there, over what was brought [-].
     """
     found = row_of(run)
@@ -62,8 +63,9 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     held = grains_along_row(run, found.row, frames)
     rise = np.array([_front(found.row.x, line) for line in beds])
     foot = np.array([_foot(found.row.x, line) for line in beds])
-    on = np.flatnonzero((foot > FLAT + 2.0 * found.row.dx) & (found.t >= BEGIN - 1e-9))
-    if len(on) < 20 or foot.max() > LAST:
+    near = np.maximum.accumulate(foot) <= LAST
+    on = np.flatnonzero((foot > FLAT + 2.0 * found.row.dx) & (found.t >= BEGIN - 1e-9) & near)
+    if len(on) < 20:
         raise ValueError(
             f"the front is on the level floor in {len(on)} frames and comes to {foot.max():.3g} m: it must "
             f"be there in 20 or more, before {LAST:g} m"
@@ -84,7 +86,7 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     left = float(rows["m"][rows["way"] == OUT].sum())
     return {
         "t": found.t[on], "front": rise[on], "expected": np.array(moved), "core": np.array(core),
-        "angle": np.array(math.degrees(math.atan(float(np.mean(slopes))))),
+        "angle": np.array(math.degrees(math.atan(float(np.nanmean(slopes))))),
         "missing": np.array(abs(brought - left - there) / brought),
     }  # fmt: skip
 
