@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 
+from ryusa.casefile.builders.schema import BedOfRunSection
 from ryusa.casefile.derive import derive
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
@@ -122,6 +123,18 @@ def test_a_single_impact_water_alone_and_grains_from_a_file_are_refused_by_name(
     (tmp_path / "grains.csv").write_text("x [m],z [m],d [m]\n0,0.01,0.002\n", encoding="utf-8")
     with pytest.raises(CaseError, match=r"build.kind = 'table': cannot be softened.*same for every seed"):
         refuse_if_not_softenable(case_run(tmp_path / "case.toml").read())
+
+
+def test_rivers_that_take_from_another_run_are_refused_by_the_key_of_that_run():
+    case = task("fed_river").read()
+    bed = case.build.model_copy(update={"bed": BedOfRunSection(run="runs/settled")})
+    with pytest.raises(CaseError, match=r"build.bed.run = 'runs/settled': cannot be softened"):
+        refuse_if_not_softenable(case.model_copy(update={"build": bed}))
+    row = case.water.row
+    end = row.upstream.model_copy(update={"end": "feeder reach", "run": "runs/even"})
+    water = case.water.model_copy(update={"row": row.model_copy(update={"upstream": end})})
+    with pytest.raises(CaseError, match=r"water.row.upstream.run = 'runs/even': cannot be softened"):
+        refuse_if_not_softenable(case.model_copy(update={"water": water}))
 
 
 def test_every_case_of_the_package_can_be_softened_but_those_that_say_why_not():

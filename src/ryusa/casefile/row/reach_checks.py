@@ -8,7 +8,7 @@ from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.resolved import resolved_contact
 from ryusa.casefile.row.reach import END, KEY, NAME
-from ryusa.casefile.row.reach_source import reach_of
+from ryusa.casefile.row.reach_source import reach_of, run_of_reach
 from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import stream, width_of
 from ryusa.casefile.shape import has_clumps
@@ -34,15 +34,15 @@ def check_reach(case: "Case") -> Iterator[CaseError]:
     keys = row_keys(case)
     if keys is None:
         return
-    for name, end in (("upstream", keys.upstream), ("downstream", keys.downstream)):
+    for side, end in (("upstream", keys.upstream), ("downstream", keys.downstream)):
         if end is None:
             continue
         if end.end != END and end.run is not None:
-            yield CaseError(f"water.row.{name}.run", end.run, f"has no effect with end '{end.end}'")
-        if end.end == END and name == "upstream" and end.run is None:
+            yield CaseError(f"water.row.{side}.run", end.run, f"has no effect with end '{end.end}'")
+        if end.end == END and side == "upstream" and end.run is None:
             yield CaseError(KEY, None, f"missing; end '{END}' needs the run folder of the reach")
-    end = keys.upstream
-    if end is None or end.end != END or end.run is None:
+    name = run_of_reach(case)
+    if name is None:
         return
     if not stream(case):
         yield CaseError(
@@ -56,7 +56,7 @@ def check_reach(case: "Case") -> Iterator[CaseError]:
         return
     assert reach is not None
     if case.materials or has_clumps(case):
-        yield CaseError(KEY, end.run, "brings spheres of one material, and this case has others: take one")
+        yield CaseError(KEY, name, "brings spheres of one material, and this case has others: take one")
     for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
         for k, one in enumerate(entries):
             if one.name == NAME:

@@ -21,11 +21,16 @@ if TYPE_CHECKING:
 _SHIFT = 0x5245  # tells the lateral shifts from other numbers drawn from the seed
 
 
-def fed_by_reach(case: "Case") -> bool:
-    """Whether a feeder reach supplies the upper end of the row of a case."""
+def run_of_reach(case: "Case") -> str | None:
+    """Run folder of the feeder reach at the upper end of the row of a case; None without one."""
     keys = row_keys(case)
     end = None if keys is None else keys.upstream
-    return end is not None and end.end == END and end.run is not None
+    return end.run if end is not None and end.end == END else None
+
+
+def fed_by_reach(case: "Case") -> bool:
+    """Whether a feeder reach supplies the upper end of the row of a case."""
+    return run_of_reach(case) is not None
 
 
 def reach_of(case: "Case") -> FeederReach | None:
@@ -35,23 +40,22 @@ def reach_of(case: "Case") -> FeederReach | None:
     ------
     CaseError : it cannot be read, or supplies nothing.
     """
-    keys = row_keys(case)
-    end = None if keys is None else keys.upstream
-    if end is None or end.end != END or end.run is None:
+    name = run_of_reach(case)
+    if name is None:
         return None
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, KEY, end.run)
+    folder, path = folder_of(case), inside(case, KEY, name)
     kept = folder / schema.REACH
     if schema.is_run_folder(folder) and kept.is_file() and not kept.is_symlink():
-        return _kept(kept, end.run, kept.stat().st_mtime_ns)
+        return _kept(kept, name, kept.stat().st_mtime_ns)
     try:
         changed = (path / schema.PROVENANCE).stat().st_mtime_ns
     except OSError:
         raise CaseError(
-            KEY, end.run, f"no such run folder in the folder of the case, {folder}: run the reach first"
+            KEY, name, f"no such run folder in the folder of the case, {folder}: run the reach first"
         ) from None
-    return _read(path, end.run, changed)
+    return _read(path, name, changed)
 
 
 @lru_cache(maxsize=2)

@@ -8,6 +8,8 @@ from ryusa.casefile.builders.schema import DropSection, FromFile
 from ryusa.casefile.builders.table import bed_of_run
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import derive
+from ryusa.casefile.row.reach import KEY
+from ryusa.casefile.row.reach_source import run_of_reach
 from ryusa.casefile.row.values import water_alone
 from ryusa.errors import CaseError
 from ryusa.laws.families import Arm, Rolling
@@ -44,9 +46,16 @@ def refuse_if_not_softenable(case: "Case") -> None:
             "cannot be softened: a single impact follows closed forms; `ryusa design` prints its contact "
             "time and overlap over the stiffness",
         )  # fmt: skip
-    if isinstance(case.build, FromFile) or bed_of_run(case) is not None:
+    if (run := run_of_reach(case)) is not None:
         raise CaseError(
-            "build.kind", "a bed of a run" if case.build.kind == "stream" else case.build.kind,
+            KEY, run, "cannot be softened: its reach has the stiffness of the case, and softer grains need a "
+            "reach of their own",
+        )  # fmt: skip
+    bed = bed_of_run(case)
+    if isinstance(case.build, FromFile) or bed is not None:
+        key, value = ("build.kind", case.build.kind) if bed is None else ("build.bed.run", bed.run)
+        raise CaseError(
+            key, value,
             "cannot be softened: its first grains are the same for every seed, so that scatter cannot be "
             "told from the effect of the stiffness; take a builder that places grains by the seed",
         )  # fmt: skip
