@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+from pydantic import AfterValidator, Field
 
 from ryusa.errors import CaseError, ParseError
 
@@ -23,6 +25,9 @@ def relative(path: str) -> str:
     if parts.is_absolute() or ".." in parts.parts or ":" in path or "\0" in path:
         raise ValueError("needs a path inside the folder of the case file, such as 'grains.csv'")
     return str(parts)
+
+
+RelativePath = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
 
 
 def folder_of(case: "Case") -> Path:

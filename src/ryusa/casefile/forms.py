@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
-from ryusa.casefile.files import contents, folder_of, inside, relative
+from ryusa.casefile.files import RelativePath, contents, folder_of, inside
 from ryusa.casefile.quantities import Number
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section
@@ -29,7 +29,7 @@ SPHERES = 12  # at most, where the case does not say
 class FormSection(Section):
     """A clump of your own; a mesh or both ratios of axes."""
 
-    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)] | None = None
+    file: RelativePath | None = None
     """STL or OBJ file of a closed body, in the folder of the case; its unit does not matter, as clumps are
     scaled to the volume of a sphere of their diameter."""
     elongation: Annotated[Number, Field(ge=0.1, le=1)] | None = None

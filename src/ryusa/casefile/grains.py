@@ -3,10 +3,10 @@
 import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic_core import InitErrorDetails
 
-from ryusa.casefile.files import relative
+from ryusa.casefile.files import RelativePath
 from ryusa.casefile.grading import grading_of, grading_rows, reference_diameter
 from ryusa.casefile.quantities import Density, Length, Number, Ratio
 from ryusa.casefile.rows import ExplainRow, count, number
@@ -48,7 +48,7 @@ Spread = Annotated[
     Annotated[Ratio, Field(ge=0, lt=0.9), Tag("<number>")] | Annotated[SpreadSection, Tag("<table>")],
     Discriminator(_spread_kind),
 ]
-ShapeName = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+ShapeName = RelativePath
 Percent = Annotated[Number, Field(ge=0, le=100)]
 CurvePoints = Annotated[tuple[tuple[GrainLength, Percent], ...], Field(min_length=2, max_length=1000)]
 
@@ -65,8 +65,7 @@ class GrainsSection(Section):
     """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""
     sieve_curve: (
         Annotated[
-            Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative), Tag("<file>")]
-            | Annotated[CurvePoints, Tag("<points>")],
+            Annotated[RelativePath, Tag("<file>")] | Annotated[CurvePoints, Tag("<points>")],
             Discriminator(_curve_kind),
         ]
         | None
@@ -80,9 +79,7 @@ class GrainsSection(Section):
     coarsest: GrainLength | None = None
     """Largest grain of the sieve_curve that is laid; the mass of coarser ones is left out."""
     shape: Annotated[
-        Annotated[
-            Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)], Tag("<name>")
-        ]
+        Annotated[RelativePath, Tag("<name>")]
         | Annotated[
             dict[ShapeName, Annotated[Number, Field(gt=0, le=1)]],
             Tag("<shares>"),

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from ryusa.casefile.builders.values import periodic
-from ryusa.casefile.files import relative
+from ryusa.casefile.files import RelativePath
 from ryusa.casefile.mesh import mesh_of, mesh_rows
 from ryusa.casefile.quantities import (
     Angle,
@@ -75,7 +75,7 @@ class WallSection(Section):
     """Radius of a disc or a cylinder."""
     ends: Literal["open", "closed", "first", "last"] = "open"
     """Ends of a cylinder that discs close: none, both, the one at `at`, or the other."""
-    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)] | None = None
+    file: RelativePath | None = None
     """STL or OBJ file of a mesh, in the folder of the case file or below it."""
     unit: Annotated[str, Field(min_length=1, max_length=16)] | None = None
     """Unit of length in that file, such as "mm"; STL and OBJ files do not say."""

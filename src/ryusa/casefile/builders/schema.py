@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from ryusa.casefile.files import relative
+from ryusa.casefile.files import RelativePath
 from ryusa.casefile.quantities import Count, Length, Moment, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.row.schema import LineFile, LinePoints
 from ryusa.casefile.section import Section
@@ -14,7 +14,7 @@ from ryusa.units import quantity
 class BedOfRunSection(Section):
     """The bed that another run of builder 'stream' has left: its grains in one frame."""
 
-    run: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+    run: RelativePath
     """Its folder, within the folder of the case."""
     at: Moment | None = None
     """Time of the frame, the nearest; the last frame when not given."""
@@ -88,7 +88,7 @@ class TableSection(Section):
 
     kind: Literal["table"]
     """Name of the builder."""
-    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+    file: RelativePath
     """File in the folder of the case. A CSV file has columns x, y, z, d, vx, vy, vz, wx, wy, wz with their
     units in the header, such as x [cm]; fixed (0 or 1) and group (a name). x, z and d are required."""
     format: Literal["csv", "lammps-dump", "lammps-data", "xyz", "vtu"] = "csv"
@@ -111,7 +111,7 @@ class RunSection(Section):
 
     kind: Literal["run"]
     """Name of the builder."""
-    folder: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+    folder: RelativePath
     """Run folder, within the folder of the case."""
     at: Moment | None = None
     """Time of the frame, the nearest; the last frame when not given."""

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 
-from ryusa.casefile.files import relative
+from ryusa.casefile.files import RelativePath
 from ryusa.casefile.quantities import Count, Length, Name, Number, PositiveLength
 from ryusa.casefile.section import Section
 from ryusa.units import UnitError, quantity
@@ -50,7 +50,7 @@ def _line_kind(value: Any) -> str:
     return "<file>" if isinstance(value, str) else "<points>"
 
 
-LineFile = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+LineFile = RelativePath
 LinePoints = Annotated[tuple[tuple[Length, Length], ...], Field(min_length=2, max_length=10_000)]
 Line = Annotated[
     Annotated[LineFile, Tag("<file>")] | Annotated[LinePoints, Tag("<points>")], Discriminator(_line_kind)
@@ -75,7 +75,7 @@ class RowEndSection(Section):
     profile: Literal["developed", "uniform"] = "developed"
     """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every
     height."""
-    run: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)] | None = None
+    run: RelativePath | None = None
     """Run folder of end = "feeder reach", upstream alone, within the folder of the case: a finished run of a
     periodic row over a moving bed. Discharge, profile and depth are its means after its record.settle; its
     grains enter as they cross its downstream end, and its record is repeated where it is the shorter one."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
 from ryusa.casefile.builders.table import table_of
-from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
+from ryusa.casefile.builders.values import FEWEST_PERIODS, built_counts, sizes
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowSection
@@ -186,7 +186,7 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     if not begin < end:
         yield CaseError("build.begin", build.begin, f"must lie before the end of the bed, {end:g} m")
         return
-    if build.bed != 0.0 and stream_count(case) < 1:
+    if build.bed != 0.0 and built_counts(case)[0] < 1:
         shown = build.bed if isinstance(build.bed, float | int) else None
         yield CaseError("build.bed", shown, "gives no grain: take a thicker or longer bed")
     for k, feed in enumerate(case.feeds):

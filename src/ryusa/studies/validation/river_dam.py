@@ -135,7 +135,7 @@ def _judged(found: Found, dams: Dams) -> Finding:
                              bands.DAM_VOLUME))  # fmt: skip
     names = [f"feed {share:.2f}" for share in dams.shares]
     ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, runs, strict=True)]
-    x = np.linspace(0.0 if dams is LONG else 0.4, FACE, 101)
+    x = np.linspace(0.0, FACE, 141)
     theory = [
         Curve(name, x, 1e3 * np.maximum(dams.high - (FACE - x) * one, 0.0))
         for name, one in zip(names, fall, strict=True)
