@@ -10,6 +10,7 @@ import pytest
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.results.row import RowFrames
+from ryusa.view.box import box_of
 from ryusa.view.flow import SurfaceLine, surface_line, surfaces
 from ryusa.view.picture import DEEP_ALPHA, Painter
 
@@ -83,6 +84,20 @@ def test_a_picture_from_the_side_has_water_between_the_surface_and_the_bottom(en
     over = (deep[:, 2] - bottom).reshape(5, 4)
     assert over[:, 2:] == pytest.approx(0.0, abs=1e-12)
     assert over[1:-1, :2] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("deep", "top"), [(0.9, 0.9), (1.1, 0.05)])
+def test_the_box_of_a_row_holds_water_up_to_half_of_its_length_over_a_thin_bed(
+    deep: float, top: float
+) -> None:
+    """Grains 5 cm high under deeper water at one end of a row of 2 m."""
+    run = run_of([[deep, 0.1, 0.1, 0.1]], ends=False)
+    run.scene = SimpleNamespace(
+        d_fixed=np.zeros(0), x_fixed=np.zeros((0, 3)), period=(math.inf, math.inf), walls=None, water=None
+    )
+    centres = np.array([[2.025, 0.0, 0.025], [3.975, 0.0, 0.025]])
+    low, high = box_of(run, np.full(2, 0.05), [centres])
+    assert (low[2], high[2]) == pytest.approx((0.0, top))
 
 
 def test_without_a_row_there_is_no_line() -> None:

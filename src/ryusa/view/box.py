@@ -31,7 +31,8 @@ def needs_grains(results: Results) -> None:
 def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floats, Floats]:
     """Lowest and highest corner of what is shown [m]: free grains at all times, fixed ones, periods, water.
 
-    A surface far above the grains is left out: they would be dots.
+    A surface far above the grains is left out: they would be dots. That along a row is not, up to half of
+    its length, which sets their size.
 
     Parameters
     ----------
@@ -63,12 +64,13 @@ def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floa
         if math.isfinite(period):
             low[axis], high[axis] = 0.0, period
     line = surface_line(results)
-    surface = surfaces(results).max(initial=-math.inf)
+    surface, reach = surfaces(results).max(initial=-math.inf), FAR * (high[2] - low[2])
     if line is not None:
         surface = float(np.nanmax(line.z, initial=-math.inf))
         if line.x[-1] - line.x[0] < FAR * (high[0] - low[0]):
             low[0], high[0] = min(low[0], line.x[0]), max(high[0], line.x[-1])
-    if high[2] < surface < low[2] + FAR * (high[2] - low[2]):
+        reach = max(reach, 0.5 * (high[0] - low[0]))
+    if high[2] < surface < low[2] + reach:
         high[2] = surface
     return low, high
 
