@@ -4,6 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
+from ryusa.compiled import store
 from ryusa.engine.cuda import availability
 from ryusa.running import doctor
 
@@ -26,16 +27,12 @@ def test_the_doctor_says_why_cuda_cannot_be_used_or_what_card_there_is(
     assert dict(doctor.diagnosis())["engine cuda"] == "available: A card"
 
 
-def test_the_doctor_says_when_numba_cannot_write_its_cache(
+def test_the_doctor_says_when_the_cache_cannot_be_written(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
-    from ryusa.engine.shared import dashpots
-
-    class Kept:
-        cache_path = str(tmp_path / "file" / "cache")
-
     (tmp_path / "file").write_text("no folder")
-    monkeypatch.setattr(dashpots, "dashpots", type("Compiled", (), {"_cache": Kept})())
+    closed = store.Store(tmp_path / "file" / "cache", store.own().processor)
+    monkeypatch.setattr(store, "own", lambda: closed)
     found = dict(doctor.diagnosis())["cache"]
     assert found.startswith("no permission to write to")
-    assert "NUMBA_CACHE_DIR" in found
+    assert "RYUSA_CACHE" in found

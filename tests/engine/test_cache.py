@@ -10,7 +10,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 engine = CpuEngine()
 engine.load(*scene([[0.0, 0.0, 0.0], [0.0, 0.0, 2.0e-3]], 2.0e-3))
 engine.advance(3).raise_if_any()
-print(sum(engine._run.stats.cache_hits.values()), sum(engine._run.stats.cache_misses.values()))
+print(sum(engine._run.entry.stats.cache_hits.values()), sum(engine._run.entry.stats.cache_misses.values()))
 """
 
 

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 from hypothesis import strategies as st
-from numba.core.dispatcher import Dispatcher
 
 import ryusa.laws
+from ryusa.compiled.function import Compiled
 
 TABLES = {"families", "dispatch"}  # they choose among the laws
 
@@ -57,11 +57,11 @@ def census() -> dict[str, Law]:
     found: dict[str, Law] = {}
     for module in modules():
         for name, thing in vars(module).items():
-            if isinstance(thing, Dispatcher) and thing.py_func.__module__ == module.__name__:
+            if isinstance(thing, Compiled) and thing.py_func.__module__ == module.__name__:
                 parameters = inspect.signature(thing.py_func).parameters
                 full = f"{module.__name__.rsplit('.', 1)[1]}.{name}"
                 kinds = tuple(parameter.annotation for parameter in parameters.values())
-                found[full] = Law(full, thing, thing.py_func, tuple(parameters), kinds)
+                found[full] = Law(full, thing.entry, thing.py_func, tuple(parameters), kinds)
     return found
 
 

@@ -7,7 +7,7 @@ from enum import IntEnum
 from functools import cache
 from typing import Any, Self, TypeVar, cast
 
-from ryusa.laws._law import compiled
+from ryusa.compiled.function import compiled_law
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -183,7 +183,7 @@ def marked(family: type[Family], mark: str) -> Any:
     if not bits:
         raise TypeError(f"no choice of {family.__name__} is marked '{mark}' in laws/families.py")
 
-    @_uncached(False, f"{family.__name__}.{mark}")
+    @_link_of(False, f"{family.__name__}.{mark}")
     def carries(chosen: Any) -> Any:
         return (bits >> chosen) & 1 != 0
 
@@ -260,23 +260,13 @@ def _name(choice: Family) -> str:
     return f"{type(choice).__name__}.{choice.name} ('{choice.word}')"
 
 
-def _uncached(fastmath: Any, name: str) -> Callable[[F], F]:
-    """Compile without a cache on disk, because the laws are in the closure of the function.
-
-    Notes
-    -----
-    `name` must tell apart what the closures hold. Numba names a compiled function by its module, its
-    qualified name, its types and a number that counts functions in the order in which the process defined
-    them. A cached caller carries such functions along under the names that they had in the process that
-    compiled it. If two functions of different closures had one qualified name, they could meet under one
-    symbol, and the linker keeps the first: the wrong law would be called.
-    """
+def _link_of(fastmath: Any, name: str) -> Callable[[F], F]:
+    """A part of a dispatch, with the laws in its closure; `name` tells what it holds to whoever lists it."""
     fast = set(fastmath) if isinstance(fastmath, frozenset) else fastmath
-    flags = "fused" if fast else "plain"
 
     def decorate(function: F) -> F:
-        function.__qualname__ = f"{function.__qualname__}.{name}.{flags}"
-        return compiled(None, fastmath=fast, forceinline=True)(function)
+        function.__qualname__ = f"{function.__qualname__}.{name}"
+        return compiled_law(fastmath=fast, forceinline=True)(function)
 
     return decorate
 
@@ -286,14 +276,14 @@ def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
     """Function that selects the arguments of a law, by their positions, from all arguments of its family."""
     if not places:
 
-        @_uncached(fastmath, "none")
+        @_link_of(fastmath, "none")
         def none(given: Any) -> Any:
             return ()
 
         return none
     first, rest = places[0], _picker(places[1:], fastmath)
 
-    @_uncached(fastmath, "_".join(map(str, places)))
+    @_link_of(fastmath, "_".join(map(str, places)))
     def pick(given: Any) -> Any:
         return (given[first], *rest(given))
 
@@ -303,7 +293,7 @@ def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
 def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any, name: str) -> Any:
     """One branch of a dispatch: this law if the number matches, else the remaining branches."""
 
-    @_uncached(fastmath, name)
+    @_link_of(fastmath, name)
     def link(chosen: Any, *given: Any) -> Any:
         if chosen == number:
             return law(*pick(given))
@@ -315,7 +305,7 @@ def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any, name: str)
 def _lanes(number: int, law: Any, pick: Any, read: Any, write: Any, lanes: int, rest: Any, name: str) -> Any:
     """One branch of a dispatch over lanes."""
 
-    @_uncached(False, name)
+    @_link_of(False, name)
     def loop(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
         if chosen == number:
             for lane in range(min(m, lanes)):  # never more: the compiler has to know
@@ -329,7 +319,7 @@ def _lanes(number: int, law: Any, pick: Any, read: Any, write: Any, lanes: int, 
 def _no_lanes(unknown: Any, read: Any, write: Any, lanes: int, name: str) -> Any:
     """Last branch of a dispatch over lanes: a number outside the family."""
 
-    @_uncached(False, name)
+    @_link_of(False, name)
     def nothing(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
         for lane in range(min(m, lanes)):
             write(lane, batch, unknown(chosen))
@@ -341,7 +331,7 @@ def _nothing_known(answers: int, fastmath: Any) -> Any:
     """Last branch of a dispatch: a number outside the family."""
     lost = math.nan if answers == 1 else (math.nan,) * answers
 
-    @_uncached(fastmath, str(answers))
+    @_link_of(fastmath, str(answers))
     def unknown(chosen: Any, *given: Any) -> Any:
         return lost
 

@@ -7,8 +7,8 @@ receives those that its parameters name. For a number outside the family the res
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from ryusa.compiled.function import compiled_law
 from ryusa.laws._family import dispatch, marked, rules
-from ryusa.laws._law import EDITION, compiled
 from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
 from ryusa.laws.families import (
     Adhesion,
@@ -79,7 +79,7 @@ rolling_alike = marked(Rolling, "both alike")
 
 def _inlined(function: F) -> F:
     """Compile a function that is inlined into its callers."""
-    return compiled(EDITION, fastmath=False, forceinline=True)(function)
+    return compiled_law(forceinline=True)(function)
 
 
 @_inlined

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ryusa.laws._law import step_law
+from ryusa.laws._law import step_law, step_law_of_bits
 
 ROUNDER = 1.5 * 2.0**52
 ROUNDER_BITS = 0x4338000000000000
@@ -28,6 +28,10 @@ NORMAL = 2.0**-1022  # the smallest number with all its bits
 ROOT_HALF_BITS = 0x3FE6A09E667F3BCD  # sqrt(1/2)
 # exp and expm1 are 0 and -1 below the first, infinite above the second
 UNDERFLOW, OVERFLOW = -746.0, 710.0
+
+
+def _power(x: float, y: float) -> float:
+    return math.pow(x, y) if x >= 0.0 or y == 0.0 else math.nan  # of a negative number math has some
 
 
 @step_law
@@ -48,8 +52,8 @@ def exp_parts(x: float) -> tuple[float, float, float, float]:
     -----
     Source: Taylor series of exp(r) - 1 to r**13, truncated below 5e-18.
 
-    >>> exp_parts(0.0)
-    (0.0, 1.0, 1.0, 1.0)
+    >>> [float(part) for part in exp_parts(0.0)]
+    [0.0, 1.0, 1.0, 1.0]
     """
     x = UNDERFLOW if x < UNDERFLOW else x
     x = OVERFLOW if x > OVERFLOW else x
@@ -69,7 +73,7 @@ def exp_parts(x: float) -> tuple[float, float, float, float]:
     return q, a, b, np.int64((BIAS - half) << 52).view(np.float64)
 
 
-@step_law
+@step_law_of_bits(math.exp)
 def exp(x: float) -> float:
     """Exponential [-]; 0 below -745.2, inf above 709.8.
 
@@ -80,7 +84,7 @@ def exp(x: float) -> float:
     return (a + a * q) * b
 
 
-@step_law
+@step_law_of_bits(math.expm1)
 def expm1(x: float) -> float:
     """exp(x) - 1 [-], accurate for small x; inf above 709.8.
 
@@ -91,7 +95,7 @@ def expm1(x: float) -> float:
     return (a * q + (a - per_b)) * b
 
 
-@step_law
+@step_law_of_bits(math.tanh)
 def tanh(x: float) -> float:
     """Hyperbolic tangent [-].
 
@@ -102,7 +106,7 @@ def tanh(x: float) -> float:
     return math.copysign(1.0 if grown > 1.0e30 else grown / (grown + 2.0), x)
 
 
-@step_law
+@step_law_of_bits(math.log)
 def log(x: float) -> float:
     """Natural logarithm [-]; -inf at 0, nan below, inf at inf.
 
@@ -131,7 +135,7 @@ def log(x: float) -> float:
     return found if x < math.inf else x
 
 
-@step_law
+@step_law_of_bits(math.log10)
 def log10(x: float) -> float:
     """Logarithm to base 10 [-]; -inf at 0, nan below, inf at inf.
 
@@ -141,7 +145,7 @@ def log10(x: float) -> float:
     return log(x) * PER_LN10
 
 
-@step_law
+@step_law_of_bits(_power)
 def power(x: float, y: float) -> float:
     """x**y [-] for x >= 0; nan for x < 0 unless y = 0.
 

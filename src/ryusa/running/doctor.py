@@ -4,10 +4,10 @@ import os
 import platform
 import sys
 import tempfile
-from pathlib import Path
 from typing import Any
 
 from ryusa import __version__
+from ryusa.compiled import store
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
 
@@ -47,28 +47,17 @@ def _vectors() -> str:
 
 
 def _cache() -> str:
-    """Folder in which numba stores compiled code, and whether it can be written."""
-    from ryusa.engine.shared import dashpots
-
-    compiled: Any = dashpots.dashpots
-    place = getattr(getattr(compiled, "_cache", None), "cache_path", None)
-    if place is None:
-        return (
-            "no folder found, so that every process compiles again. "
-            "Set NUMBA_CACHE_DIR to a folder that you can write"
-        )
-    folder = Path(place)
+    """Folder of compiled code, and whether it can be written."""
+    kept = store.own()
+    advice = "so that every process compiles again. Set RYUSA_CACHE to a folder that you can write"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
+        kept.folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=kept.folder):
             pass
     except OSError as error:
-        return (
-            f"no permission to write to {folder} ({error.strerror}), so that every process compiles again. "
-            "Set NUMBA_CACHE_DIR to a folder that you can write"
-        )
-    size = sum(file.stat().st_size for file in folder.iterdir() if file.is_file())
-    return f"{folder}, writable, {size / 2**20:.0f} MiB of compiled code"
+        return f"no permission to write to {kept.folder} ({error.strerror}), {advice}"
+    files, size = kept.size()
+    return f"{kept.folder}, writable, {size / 2**20:.0f} MiB of compiled code in {files} files"
 
 
 def _engine(name: str) -> str:

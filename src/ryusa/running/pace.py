@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from ryusa.engine import registry
-from ryusa.engine.shared.kernel import collecting_rarely
 from ryusa.running.progress import Progress
 
 _LONG = 2.0  # days on the CPU engine from which other engines are named
@@ -19,7 +18,7 @@ _COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the
 @contextmanager
 def compiling(progress: Progress) -> Generator[None]:
     """Explain a call that takes long because it compiles."""
-    with progress.explain_if_slow(_COMPILING), collecting_rarely():
+    with progress.explain_if_slow(_COMPILING):
         yield
 
 

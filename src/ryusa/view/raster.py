@@ -8,16 +8,14 @@ other: any number of threads gives the same bits.
 
 import math
 import os
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any, TypeVar, cast
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-F = TypeVar("F", bound=Callable[..., Any])
+from ryusa.compiled.function import compiled
+
 Singles = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
@@ -29,10 +27,6 @@ _LONG = math.sqrt(0.35**2 + 0.75**2 + 0.55**2)
 LIGHT = (-0.35 / _LONG, 0.75 / _LONG, 0.55 / _LONG)  # where it comes from: right, up, towards the eye
 _ROWS = 64  # of samples in a band
 _CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _compiled(function: F) -> F:
-    return cast(F, numba.njit(error_model="numpy", cache=True, nogil=True)(function))
 
 
 @dataclass(frozen=True)
@@ -114,7 +108,7 @@ class Canvas:
         reduce(top, end, colour, picture)
 
 
-@_compiled
+@compiled(nogil=True)
 def nearest(
     place: Singles, radius: Singles, top: int, end: int, depth: Singles, which: NDArray[np.int32]
 ) -> None:
@@ -144,7 +138,7 @@ def nearest(
                     which[row, column] = g
 
 
-@_compiled
+@compiled(nogil=True)
 def light(
     place: Singles, radius: Singles, own: Bytes, chosen: int,
     top: int, end: int, which: NDArray[np.int32], colour: Bytes,
@@ -168,7 +162,7 @@ def light(
                 colour[row, column, k] = np.uint8(plain * strong + 0.5)
 
 
-@_compiled
+@compiled(nogil=True)
 def draw_line(ends: Singles, own: Bytes, top: int, end: int, depth: Singles, colour: Bytes) -> None:
     """Draw a line, two samples wide, where nothing nearer hides it."""
     wide = depth.shape[1]
@@ -197,7 +191,7 @@ def draw_line(ends: Singles, own: Bytes, top: int, end: int, depth: Singles, col
                         colour[row, column, k] = own[k]
 
 
-@_compiled
+@compiled(nogil=True)
 def lay_face(
     corners: Singles, own: Bytes, alpha: float, top: int, end: int, depth: Singles, colour: Bytes
 ) -> None:
@@ -232,7 +226,7 @@ def lay_face(
                     colour[row, column, k] = np.uint8(mixed + 0.5)
 
 
-@_compiled
+@compiled(nogil=True)
 def reduce(top: int, end: int, colour: Bytes, picture: Bytes) -> None:
     """Mean of the samples of each pixel in rows top .. end - 1 of samples."""
     for row in range(top // SAMPLES, end // SAMPLES):

@@ -2,31 +2,25 @@
 
 from collections.abc import Callable
 from functools import lru_cache
-from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from ryusa.laws._law import LAWS, compiled, edition
+from ryusa.compiled.function import compiled
 from ryusa.model.column import Column
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-_HERE = Path(__file__).parent
-_MODEL = _HERE.parent / "model"
-_EDITION = edition(LAWS, _HERE, _MODEL / "column.py", _MODEL / "row_energy.py")
-
-
 def kernel(function: F) -> F:
-    """Compile a function at its first call. The cache key covers the sources of laws, water and the model.
+    """Compile a function at its first call.
 
     It runs without the lock of the interpreter, so that threads can share a loop (`row_threads`).
     """
-    return compiled(_EDITION, fastmath=False, nogil=True)(function)
+    return compiled(nogil=True)(function)
 
 
 def sums(function: F) -> F:
     """Compile as `kernel` a function that sums what no step of the water depends on: in any order."""
-    return compiled(_EDITION, fastmath={"contract", "nsz", "reassoc"}, nogil=True)(function)
+    return compiled(fastmath={"contract", "nsz", "reassoc"}, nogil=True)(function)
 
 
 class ColumnParameters(NamedTuple):

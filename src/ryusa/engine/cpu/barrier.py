@@ -9,8 +9,10 @@ import sys
 from typing import Any
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
+
+from ryusa.engine.shared.kernel import inner
 
 _yield_core: Any = types.ExternalFunction("sched_yield", types.int32()) if sys.platform != "win32" else None
 _SPINS = 4000  # reads of the counter before the core is offered to others
@@ -40,7 +42,7 @@ def _load(typingctx: Any, array: Any) -> Any:
     return types.int64(array), codegen
 
 
-@njit(nogil=True)
+@inner(forceinline=False)
 def wait(count: Any, n_threads: int, target: int) -> int:
     """Wait until all threads have arrived; returns the target of the next call.
 

@@ -4,18 +4,14 @@ LAMMPS stores velocities of whole steps between its runs, ryusa those half a ste
 use the same scheme: a force at x(n) sees v(n - 1/2).
 """
 
-from pathlib import Path
 from typing import Any
 
+from ryusa.compiled.function import FAST, compiled
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws._law import FAST, LAWS, compiled, edition
 from ryusa.laws.grain_step import flow_force, impulse_from_fluid, resisted_torque
 from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
-
-_ENGINE = Path(__file__).parents[1]
-_EDITION = edition(LAWS, _ENGINE / "shared", _ENGINE / "lammps", _ENGINE.parent / "model")
 
 # columns of `last`: drag, lift and force of the accelerating water on its added mass in the last force
 # evaluation [N]; drag over slip there [N s/m]; velocity when the impulse was counted anew [m/s]
@@ -23,7 +19,7 @@ FORCE, K_D, V_BEGIN = 0, 3, 4
 SOLID = 0.4  # moment of inertia of a sphere over m R^2, with which LAMMPS turns grains
 
 
-@compiled(_EDITION, fastmath=FAST)
+@compiled(fastmath=FAST)
 def complete_forces(
     choice: LawChoice, plane: bool, column: bool, c: Any, own: Any, tag: Any, x: Any, v: Any, w: Any, r: Any,
     mass: Any, contact: Any, f: Any, torque: Any, sampled: Any, last: Any,
@@ -82,7 +78,7 @@ def complete_forces(
         torque[i, 2] = 0.0 if plane else scale * t_z
 
 
-@compiled(_EDITION)
+@compiled()
 def count_impulse(tag: Any, n_grain: int, dt: float, last: Any, impulse: Any) -> None:
     """Add the impulse of the forces of the last evaluation, which have acted for a step now."""
     for i in range(len(tag)):
@@ -92,7 +88,7 @@ def count_impulse(tag: Any, n_grain: int, dt: float, last: Any, impulse: Any) ->
             impulse[i, DRAG] = last[i, K_D]
 
 
-@compiled(_EDITION)
+@compiled()
 def taken_from_water(
     tag: Any, own: Any, v_half: Any, sampled: Any, impulse: Any, last: Any, out: Any
 ) -> None:
@@ -109,7 +105,7 @@ def taken_from_water(
         out[i, DRAG] = impulse[i, DRAG]
 
 
-@compiled(_EDITION)
+@compiled()
 def shift_velocities(
     tag: Any, n_grain: int, turns: bool, dt: float, mass: Any, r: Any, f: Any, torque: Any, v: Any, w: Any
 ) -> None:

@@ -13,6 +13,7 @@ from numba import types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
+EXTENDS_NUMBA = True  # kernels hold the text of this module as their content (compiled/content.py)
 _VEC4 = ir.VectorType(ir.DoubleType(), 4)
 
 

@@ -1,0 +1,142 @@
+"""Numba's dispatchers of a compiled function: one for kernels that call it, one for calls from Python."""
+
+import pickle
+import time
+from typing import TYPE_CHECKING, Any
+
+from numba.core import serialize, sigutils
+from numba.core import types as numba_types
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher
+
+from ryusa.compiled import processor, store
+from ryusa.compiled.content import UnknownContentError, digest_of
+from ryusa.compiled.numba_parts import (
+    InnerPipeline,
+    compiling,
+    entry_of,
+    inner_of,
+    parts_of_entry,
+    parts_of_inner,
+    set_environments,
+)
+
+if TYPE_CHECKING:
+    from ryusa.compiled.function import Compiled
+
+UNPICKLED = (
+    pickle.UnpicklingError,
+    AttributeError,
+    ImportError,
+    EOFError,
+    IndexError,
+    KeyError,
+    TypeError,
+    ValueError,
+)
+
+
+class _Kept:
+    """What stands between a dispatcher and the store: as much of Numba's cache as a dispatcher asks for."""
+
+    cache_path = ""
+
+    def __init__(self, function: "Compiled", kind: str) -> None:
+        self._function, self._kind = function, kind
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """What the store has for these types; None where it is to be compiled."""
+        self._began = time.process_time()
+        rebuild = inner_of if self._kind == "inner" else entry_of
+        for tier in store.tiers():
+            key = self.key(signature, tier.processor)
+            data = tier.load(key) if key else None
+            if data is None:
+                continue
+            context.refresh()  # what loaded code calls of Numba is there only then
+            try:
+                return rebuild(context, pickle.loads(data))
+            except UNPICKLED:  # of a class or module that is no longer there
+                continue
+        return None
+
+    def save_overload(self, signature: Any, made: Any) -> None:
+        """Keep what has been compiled; the store answers for disks that are full or closed."""
+        key = self.key(signature, processor.own())
+        if key is None:
+            return
+        if self._kind == "entry":
+            set_environments(made)
+        parts = parts_of_inner(made) if self._kind == "inner" else parts_of_entry(made)
+        function = self._function
+        about = {
+            "name": function.name,
+            "kind": self._kind,
+            "seconds": round(time.process_time() - self._began, 3),
+            "processor": processor.own().name,
+        }
+        store.own().save(key, about, serialize.dumps(parts))
+
+    def key(self, signature: Any, of: "processor.Processor") -> str | None:
+        """What names the code: content, types, versions and processor; None where content is unknown."""
+        try:
+            types, returned = sigutils.normalize_signature(signature)
+            told = [_of_type(one) for one in (*types, returned)]
+            return digest_of(self._kind, self._function.content, *told, *processor.versions(), *of.key)
+        except UnknownContentError:
+            return None
+
+    def flush(self) -> None:
+        """Nothing to do: what is kept is never changed."""
+
+
+def _of_type(one: Any) -> Any:
+    """A type of Numba in plain values."""
+    if isinstance(one, numba_types.BaseTuple):
+        parts: Any = one  # also iterates where the types are all alike
+        fields, owner = getattr(one, "fields", ()), getattr(one, "instance_class", None)
+        inside = [_of_type(part) for part in parts]
+        return (
+            "tuple",
+            *((owner.__module__, owner.__qualname__) if owner else ()),
+            tuple(fields),
+            tuple(inside),
+        )
+    if isinstance(one, numba_types.Dispatcher):
+        function = getattr(one.dispatcher, "function", None)
+        if function is None:
+            raise UnknownContentError(str(one))
+        return ("function", function.content)
+    return (type(one), str(one))
+
+
+class Inner(CPUDispatcher):  # type: ignore[misc]
+    """Compiles a function for the kernels that call it; it has no entry from Python."""
+
+    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
+        options = options | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        super().__init__(function.py_func, targetoptions=options, pipeline_class=InnerPipeline)
+        self.function, self._cache = function, _Kept(function, "inner")
+
+    def compile(self, sig: Any) -> Any:
+        """Load or compile the code for these types."""
+        with global_compiler_lock, compiling():
+            return super().compile(sig)
+
+    def add_overload(self, cres: Any) -> None:
+        """Note the code for kernels; Python cannot call it."""
+        self.overloads[tuple(cres.signature.args)] = cres
+
+
+class Entry(CPUDispatcher):  # type: ignore[misc]
+    """Compiles a function for calls from Python, with all that it calls built into it."""
+
+    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
+        options = options | {"no_cfunc_wrapper": True}
+        super().__init__(function.py_func, targetoptions=options)
+        self.function, self._cache = function, _Kept(function, "entry")
+
+    def compile(self, sig: Any) -> Any:
+        """Load or compile the code for these types."""
+        with global_compiler_lock, compiling():
+            return super().compile(sig)
