@@ -7,11 +7,11 @@ import pytest
 from numba import njit
 
 from ryusa.engine.cpu import fluid_layout as W
-from ryusa.engine.cpu.fluid_forces import forces_in_column, forces_in_profile
+from ryusa.engine.cpu.fluid_forces import make_forces_in_column, make_forces_in_profile
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
 from ryusa.engine.shared.layout import aligned
-from ryusa.engine.shared.variant import LawChoice
+from ryusa.engine.shared.variant import LawChoice, WaterLaws
 from ryusa.laws.families import Above, Buoyancy, Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import N_SAMPLED, PHI, SUBMERGED
 
@@ -57,14 +57,20 @@ def grains():
     return x, both[:, :4], both[:, 4:], fluid, rng.uniform(2.0, 3.0, N), rng.uniform(1.0, 2.0, N), c
 
 
-@njit
+def laws_of(choice):
+    return WaterLaws(*(getattr(choice, name) for name in WaterLaws._fields))
+
+
 def in_column(choice, c, v, w, m, m_bare, fluid, batch):
-    forces_in_column(choice, 1, 0, len(fluid), c, v, w, m, m_bare, fluid, batch)
+    compiled = make_forces_in_column(laws_of(choice), False)
+    compiled(0, len(fluid), c, v, w, m, m_bare, fluid, batch, None)
+    return compiled
 
 
-@njit
 def in_profile(choice, c, x, v, w, batch):
-    forces_in_profile(choice, 1, 0, len(x), c, x, v, w, batch)
+    compiled = make_forces_in_profile(laws_of(choice), False)
+    compiled(0, len(x), c, x, v, w, batch, None)
+    return compiled
 
 
 @njit
@@ -118,11 +124,9 @@ def test_lanes_hold_what_one_grain_in_given_water_feels(choice, grains):
     assert drag == pytest.approx(out, rel=1e-13)
 
 
-def test_a_law_outside_its_family_gives_no_number(grains):
-    _, v, w, fluid, m, m_bare, c = grains
-    batch = aligned(W.SIZE)
-    in_column(COLUMN._replace(drag=99), c, v, w, m, m_bare, fluid, batch)
-    assert np.isnan(batch[W.K_D + 2 : W.K_D + N]).all()
+def test_a_law_outside_its_family_is_refused_before_it_is_compiled():
+    with pytest.raises(ValueError, match="99 is not a valid Drag"):
+        make_forces_in_column(laws_of(COLUMN._replace(drag=99)), False)
 
 
 def test_a_lane_does_not_depend_on_its_place(grains):
@@ -143,10 +147,12 @@ def test_a_lane_does_not_depend_on_its_place(grains):
 
 def test_no_law_on_lanes_leaves_them_for_a_call_of_the_library(grains):
     x, v, w, fluid, m, m_bare, c = grains
-    in_column(CHOICES[0], c, v, w, m, m_bare, fluid, aligned(W.SIZE))
-    in_profile(GIVEN[0], c, x, v, w, aligned(W.SIZE))
-    for loop in (in_column, in_profile):
-        for code in loop.inspect_llvm().values():
+    column = in_column(CHOICES[0], c, v, w, m, m_bare, fluid, aligned(W.SIZE))
+    profile = in_profile(GIVEN[0], c, x, v, w, aligned(W.SIZE))
+    for loop in (column, profile):
+        for kinds in loop.entry.signatures:
+            loop.inner.compile(kinds)
+            code = str(loop.inner.overloads[kinds].library._get_module_for_linking())
             # each product of a law is there twice: for vectors, and for the grains left at the end of a loop;
             # how many there are is the compiler's choice
             vectors = len(re.findall(r"fmul.* <\d+ x double>", code))

@@ -20,6 +20,7 @@ from ryusa.compiled.numba_parts import (
     parts_of_inner,
     set_environments,
 )
+from ryusa.compiled.piece import LentType, Piece, PieceType
 
 if TYPE_CHECKING:
     from ryusa.compiled.function import Compiled
@@ -65,7 +66,7 @@ class _Kept:
         key = self.key(signature, processor.own())
         if key is None:
             return
-        if self._kind == "entry":
+        if self._kind != "inner":
             set_environments(made)
         parts = parts_of_inner(made) if self._kind == "inner" else parts_of_entry(made)
         function = self._function
@@ -107,6 +108,10 @@ def _of_type(one: Any) -> Any:
         if function is None:
             raise UnknownContentError(str(one))
         return ("function", function.content)
+    if isinstance(one, LentType):
+        return ("lent", _of_type(one.of))
+    if isinstance(one, PieceType):
+        return ("piece", *(_of_type(part) for part in (one.signature.return_type, *one.signature.args)))
     return (type(one), str(one))
 
 
@@ -123,9 +128,28 @@ class Inner(CPUDispatcher):  # type: ignore[misc]
         with global_compiler_lock, compiling():
             return super().compile(sig)
 
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """The signature for these types: one for a number, be it a constant of the caller or not."""
+        return super().get_call_template([numba_types.unliteral(one) for one in args], kws)
+
     def add_overload(self, cres: Any) -> None:
         """Note the code for kernels; Python cannot call it."""
         self.overloads[tuple(cres.signature.args)] = cres
+
+
+class Pieces(CPUDispatcher):  # type: ignore[misc]
+    """Compiles a function for kernels that call it by its address."""
+
+    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
+        options = options | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        super().__init__(function.py_func, targetoptions=options)
+        self.function, self._cache = function, _Kept(function, "piece")
+
+    def piece(self, *given: Any) -> Piece:
+        """The piece for arguments of these types."""
+        with global_compiler_lock, compiling():
+            self.compile(given)
+        return Piece(self.overloads[given])
 
 
 class Entry(CPUDispatcher):  # type: ignore[misc]

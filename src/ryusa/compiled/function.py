@@ -75,6 +75,13 @@ class Compiled:
         return Inner(self, self._plain())
 
     @cached_property
+    def pieces(self) -> Any:
+        """Numba's dispatcher for calls from kernels by address (piece.py)."""
+        from ryusa.compiled.dispatcher import Pieces
+
+        return Pieces(self, self._plain())
+
+    @cached_property
     def on_card(self) -> Any:
         """numba-cuda's dispatcher for kernels of a card, which are compiled with options of their own."""
         dispatcher: Any = import_module("numba.cuda.dispatcher")

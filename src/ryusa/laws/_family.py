@@ -138,38 +138,25 @@ def dispatch(
     return chain
 
 
-def dispatch_lanes(
-    family: type[Family],
-    arguments: tuple[str, ...],
-    read: Any,
-    write: Any,
-    lanes: int,
-    *,
-    answers: int = 1,
-    unasked: tuple[Family, ...] = (),
-) -> Any:
-    """Build the compiled loop of the law with a given number over lanes: f(number, m, batch, shared).
-
-    As `dispatch`, with the choice outside the loop, which becomes vector instructions.
+def lanes_of_law(choice: Family, arguments: tuple[str, ...], read: Any, write: Any, lanes: int) -> Any:
+    """Build the compiled loop of one law over lanes: f(m, batch, shared), which becomes vector instructions.
 
     Parameters
     ----------
-    family, arguments, answers, unasked : as in `dispatch`.
+    choice, arguments : the law, and the names of the arguments of its family, in order.
     read : compiled; read(lane, batch, shared) returns all arguments, in order.
     write : compiled; write(lane, batch, answer) keeps what the law answers.
     lanes : the most there are; the loop is over the first m.
     """
-    names = f"{family.__name__}.{'_'.join(arguments)}"
-    chain = _no_lanes(_nothing_known(answers, False), read, write, lanes, names)
-    for choice in reversed(family):
-        if choice in unasked:
-            continue
-        places = tuple(map(arguments.index, _asked_by(choice, arguments)))
-        chain = _lanes(
-            int(choice), choice.function, _picker(places, False), read, write, lanes, chain,
-            f"{choice.name}.{names}",
-        )  # fmt: skip
-    return chain
+    law: Any = choice.function
+    pick = _picker(tuple(map(arguments.index, _asked_by(choice, arguments))), False)
+
+    @_link_of(False, f"{type(choice).__name__}.{choice.name}")
+    def loop(m: Any, batch: Any, shared: Any) -> None:
+        for lane in range(min(m, lanes)):  # never more: the compiler has to know
+            write(lane, batch, law(*pick(read(lane, batch, shared))))
+
+    return loop
 
 
 def marked(family: type[Family], mark: str) -> Any:
@@ -300,31 +287,6 @@ def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any, name: str)
         return rest(chosen, *given)
 
     return link
-
-
-def _lanes(number: int, law: Any, pick: Any, read: Any, write: Any, lanes: int, rest: Any, name: str) -> Any:
-    """One branch of a dispatch over lanes."""
-
-    @_link_of(False, name)
-    def loop(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
-        if chosen == number:
-            for lane in range(min(m, lanes)):  # never more: the compiler has to know
-                write(lane, batch, law(*pick(read(lane, batch, shared))))
-        else:
-            rest(chosen, m, batch, shared)
-
-    return loop
-
-
-def _no_lanes(unknown: Any, read: Any, write: Any, lanes: int, name: str) -> Any:
-    """Last branch of a dispatch over lanes: a number outside the family."""
-
-    @_link_of(False, name)
-    def nothing(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
-        for lane in range(min(m, lanes)):
-            write(lane, batch, unknown(chosen))
-
-    return nothing
 
 
 def _nothing_known(answers: int, fastmath: Any) -> Any:

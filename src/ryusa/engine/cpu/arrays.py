@@ -113,6 +113,26 @@ class Workspace(NamedTuple):
     schedule: Any  # this thread's copy of the prune schedule, (N_SCHEDULE,)
 
 
+class StepArrays(NamedTuple):
+    """All that a step reads and writes, lent to its pieces as one (compiled/piece.py)."""
+
+    n: int  # free grains
+    n_solid: int  # with fixed grains
+    plane_case: int
+    c: Any  # parameters (shared/parameters.py)
+    material: Any  # of each grain, by id, and
+    table: Any  # parameters for each two materials; None where there is one material
+    block_start: Any  # first grain of each block, (n_block + 1,)
+    choice: Any  # LawChoice (shared/variant.py)
+    grains: Any  # GrainArrays
+    walls: Any  # WallArrays
+    pairs: Any  # PairArrays
+    candidates: Any  # CandidateArrays
+    spare: Any  # CandidateArrays, room for the pairs in touch of any block, of one thread
+    accounts: Any  # AccountArrays
+    bodies: Any  # BodyArrays (rigid_bodies.py); None where there are none
+
+
 def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(

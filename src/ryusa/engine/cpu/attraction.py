@@ -5,6 +5,7 @@ together by its attraction as by a load, and its Coulomb cap sees the push that 
 """
 # ruff: noqa: E741  (l is a lane)
 
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
@@ -59,22 +60,28 @@ def attract(
             batch[B.FORCE + 4 * l + k] += now * force * batch[B.NORMAL + k * B.PITCH + l]
 
 
-@inner(fastmath=FAST)
-def energy_of_attraction(
-    b: int, choice: LawChoice, hertz: int | None, c: Any, material: Any, table: Any, grains: GrainArrays,
-    candidates: CandidateArrays,
-) -> float:  # fmt: skip
-    """Energy that the attraction of the pairs of block b has released since they touched [J]."""
-    w, rows, amount, total = grains.w, candidates.rows, c[P.ADHESION], 0.0
-    column = 2 if rows.shape[1] == len(SHORT) else M.OVERLAP  # SHORT.index(M.OVERLAP)
-    for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
-        if candidates.touching[k]:
-            i, j = candidates.i[k], candidates.j[k]
-            if table is not None:
-                a, b_ = material_of(i, grains.ids, material), material_of(j, grains.ids, material)
-                amount = table[a, b_, P.ADHESION]
-            overlap = rows[k, column]
-            if hertz is None:
-                overlap = springs_of_row(k, rows)[0] / c[P.K_N]
-            total += attraction(choice.adhesion, amount, reduced_radius(w[i, 3], w[j, 3]), overlap)[1]
-    return total
+@cache
+def make_energy_of_attraction(hertz: bool) -> Any:
+    """Build energy_of_attraction for springs or elastic spheres."""
+
+    @inner(fastmath=FAST)
+    def energy_of_attraction(
+        b: int, choice: LawChoice, c: Any, material: Any, table: Any, grains: GrainArrays,
+        candidates: CandidateArrays,
+    ) -> float:  # fmt: skip
+        """Energy that the attraction of the pairs of block b has released since they touched [J]."""
+        w, rows, amount, total = grains.w, candidates.rows, c[P.ADHESION], 0.0
+        column = 2 if rows.shape[1] == len(SHORT) else M.OVERLAP  # SHORT.index(M.OVERLAP)
+        for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
+            if candidates.touching[k]:
+                i, j = candidates.i[k], candidates.j[k]
+                if table is not None:
+                    a, b_ = material_of(i, grains.ids, material), material_of(j, grains.ids, material)
+                    amount = table[a, b_, P.ADHESION]
+                overlap = rows[k, column]
+                if not hertz:
+                    overlap = springs_of_row(k, rows)[0] / c[P.K_N]
+                total += attraction(choice.adhesion, amount, reduced_radius(w[i, 3], w[j, 3]), overlap)[1]
+        return total
+
+    return energy_of_attraction

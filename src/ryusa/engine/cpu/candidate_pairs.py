@@ -1,17 +1,19 @@
 """The candidate pairs of a run: their arrays, and the schedule by which they are pruned."""
 
+from collections.abc import Callable
+
 import numpy as np
 
+from ryusa.compiled.piece import Piece
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import prune_schedule as K
-from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, Workspace, workspace_of_thread
+from ryusa.engine.cpu.arrays import CandidateArrays, StepArrays, Workspace, workspace_of_thread
 from ryusa.engine.cpu.prune import prune_blocks
 from ryusa.engine.cpu.prune_schedule import ROUNDED_UP, steps_ahead
 from ryusa.engine.cpu.verlet_list import BlockLayout, Share
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_memory import ContactMemory
 from ryusa.engine.shared.layout import film_reach
-from ryusa.model.scene import Floats
 
 _SKIN = 0.003  # first reach, over the smallest diameter
 _LEAST = 1e-4  # smallest
@@ -40,11 +42,10 @@ class CandidatePairs:
 
     def begin(
         self,
-        grains: GrainArrays,
-        pairs: PairArrays,
+        prune: Piece,
+        held: Callable[[int], StepArrays],
         skin: float,
         displacement: float,
-        parameters: Floats,
         memory: ContactMemory,
         place_of: np.ndarray,
         share: Share,
@@ -53,6 +54,8 @@ class CandidatePairs:
 
         Parameters
         ----------
+        prune : the piece that prunes (prune.py).
+        held : arrays of a step, with the list as it is when they are asked for.
         place_of : place of each grain that the memory names.
         skin : reach of the Verlet list beyond touch [m].
         displacement : of the fastest grain in the last step [m].
@@ -69,16 +72,12 @@ class CandidatePairs:
         schedule[K.IMAGE_ROOM] = 0.5 * layout.period.min() - layout.largest - film_reach(layout.scene)
         schedule[K.LASTS] = steps_ahead(schedule, displacement)
         reach_on = ROUNDED_UP * float(schedule[K.SKIN]) + film_reach(layout.scene)
-        ahead = float(schedule[K.LASTS] * parameters[P.DT])
+        ahead = float(schedule[K.LASTS] * held(0).c[P.DT])
         wanted = np.zeros(len(layout.block_start) - 1, np.int64)
 
         def prune_some(first: int, last: int) -> None:
             work = self._work.get(first) or self._work.setdefault(first, workspace_of_thread())
-            prune_blocks(
-                first, last, layout.block_start, layout.n, layout.n_solid, reach_on, ahead,
-                variant.plane_case, layout.walled, parameters, grains, layout.walls, pairs, self.pairs,
-                self.spares[0], work, wanted,
-            )  # fmt: skip
+            prune_blocks(prune, first, last, reach_on, ahead, variant.plane_case, work, held(0), wanted)
 
         while True:
             self.pairs.count[:] = 0
@@ -91,7 +90,7 @@ class CandidatePairs:
                 break
             if reach_on > skin + film_reach(layout.scene):
                 i, j = memory.i[missing], memory.j[missing]
-                names = [int(grains.ids[place_of[k]]) if k < layout.n else int(k) for k in (i, j)]
+                names = [int(held(0).grains.ids[place_of[k]]) if k < layout.n else int(k) for k in (i, j)]
                 raise AssertionError(f"pair {names[0]}, {names[1]} is in touch and not in the list")
             reach_on *= 2.0  # somebody moved grains apart that a snapshot has in touch
         schedule[K.CANDIDATES], schedule[K.TOUCHING] = float(self.pairs.count.sum()), float(len(memory.i))

@@ -6,6 +6,7 @@ packed into neighbouring lanes, so that one loop without branches does eight at 
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
@@ -188,42 +189,26 @@ def _make_end(plane: bool, mixed: bool) -> Any:
     return end
 
 
-_begin_plane, _begin_space = _make_begin(True, False), _make_begin(False, False)
-_end_plane, _end_space = _make_end(True, False), _make_end(False, False)
-# of materials that differ
-_begin_plane_mixed, _begin_space_mixed = _make_begin(True, True), _make_begin(False, True)
-_end_plane_mixed, _end_space_mixed = _make_end(True, True), _make_end(False, True)
+@cache
+def make_begin_and_end(plane: bool, mixed: bool) -> Any:
+    """Build begin_and_end for a plane or for space, and for one material or several."""
+    begin_some, end_some = _make_begin(plane, mixed), _make_end(plane, mixed)
 
+    @inner(fastmath=FAST)
+    def begin_and_end(
+        rotation: int, choice: LawChoice, m: int, selected: Any, i_of: Any, j_of: Any, mass: Any,
+        inertia: Any, w: Any, ids: Any, material: Any, table: Any, c: Any, batch: Any,
+    ) -> None:  # fmt: skip
+        """Do the events among the first m lanes."""
+        rules = (slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap))
+        begin, end = _find(m, selected, i_of, j_of, mass, c[P.DT], batch)
+        if begin > 0:
+            n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
+            begin_some(n, rotation != 0, rules, c, batch)
+            _put_back(begin, B.BEGINS, batch)
+        if end > 0:
+            n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
+            end_some(n, rotation != 0, rules, choice.tension != 0, c, batch)
+            _put_back(end, B.MAY_END, batch)
 
-@inner(fastmath=FAST, forceinline=True)
-def begin_and_end(
-    flat: int | None, rotation: int, choice: LawChoice, m: int, selected: Any, i_of: Any, j_of: Any,
-    mass: Any, inertia: Any, w: Any, ids: Any, material: Any, table: Any, c: Any, batch: Any,
-) -> None:  # fmt: skip
-    """Do the events among the first m lanes."""
-    rules = (slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap))
-    begin, end = _find(m, selected, i_of, j_of, mass, c[P.DT], batch)
-    if begin > 0:
-        n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
-        if table is not None:
-            if flat is not None:
-                _begin_plane_mixed(n, rotation != 0, rules, c, batch)
-            else:
-                _begin_space_mixed(n, rotation != 0, rules, c, batch)
-        elif flat is not None:
-            _begin_plane(n, rotation != 0, rules, c, batch)
-        else:
-            _begin_space(n, rotation != 0, rules, c, batch)
-        _put_back(begin, B.BEGINS, batch)
-    if end > 0:
-        n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
-        if table is not None:
-            if flat is not None:
-                _end_plane_mixed(n, rotation != 0, rules, choice.tension != 0, c, batch)
-            else:
-                _end_space_mixed(n, rotation != 0, rules, choice.tension != 0, c, batch)
-        elif flat is not None:
-            _end_plane(n, rotation != 0, rules, choice.tension != 0, c, batch)
-        else:
-            _end_space(n, rotation != 0, rules, choice.tension != 0, c, batch)
-        _put_back(end, B.MAY_END, batch)
+    return begin_and_end

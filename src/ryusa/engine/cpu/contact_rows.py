@@ -5,6 +5,7 @@ pair is four numbers: a short row of SHORT columns, half a cache line.
 """
 # ruff: noqa: E741  (l is a lane)
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.simd.vec4 import component, copy4, read4, vec4_of, write4
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared.contact_memory import ContactMemory
-from ryusa.engine.shared.dashpots import set_springs
+from ryusa.engine.shared.dashpots import make_set_springs
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import KernelVariant
 
@@ -37,32 +38,44 @@ def lengthened(memory: ContactMemory) -> ContactMemory:
     return memory._replace(rows=rows)
 
 
-@inner(fastmath=FAST)
-def row_to_lane(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
-    """Copy the memory of candidate k to lane l of a batch."""
-    if short is not None:
-        row = read4(rows, 4 * k)
-        write4(batch, B.SPRING + 4 * l, vec4_of(component(row, 0), 0.0, 0.0, component(row, 3)))
-        write4(batch, B.DASH + 4 * l, vec4_of(component(row, 1), 0.0, 0.0, component(row, 2)))
-    else:
-        width = rows.shape[1]
-        copy4(batch, B.SPRING + 4 * l, rows, width * k)
-        copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
+@cache
+def make_row_to_lane(short: bool) -> Any:
+    """Build row_to_lane(l, k, rows, batch) for short rows or whole ones."""
+
+    @inner(fastmath=FAST)
+    def row_to_lane(l: int, k: int, rows: Any, batch: Any) -> None:
+        """Copy the memory of candidate k to lane l of a batch."""
+        if short:
+            row = read4(rows, 4 * k)
+            write4(batch, B.SPRING + 4 * l, vec4_of(component(row, 0), 0.0, 0.0, component(row, 3)))
+            write4(batch, B.DASH + 4 * l, vec4_of(component(row, 1), 0.0, 0.0, component(row, 2)))
+        else:
+            width = rows.shape[1]
+            copy4(batch, B.SPRING + 4 * l, rows, width * k)
+            copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
+
+    return row_to_lane
 
 
-@inner(fastmath=FAST)
-def lane_to_row(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
-    """Copy the memory of lane l of a batch back to candidate k."""
-    if short is not None:
-        spring, dash = read4(batch, B.SPRING + 4 * l), read4(batch, B.DASH + 4 * l)
-        write4(
-            rows, 4 * k,
-            vec4_of(component(spring, 0), component(dash, 0), component(dash, 3), component(spring, 3)),
-        )  # fmt: skip
-    else:
-        width = rows.shape[1]
-        copy4(rows, width * k, batch, B.SPRING + 4 * l)
-        copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
+@cache
+def make_lane_to_row(short: bool) -> Any:
+    """Build lane_to_row(l, k, rows, batch) for short rows or whole ones."""
+
+    @inner(fastmath=FAST)
+    def lane_to_row(l: int, k: int, rows: Any, batch: Any) -> None:
+        """Copy the memory of lane l of a batch back to candidate k."""
+        if short:
+            spring, dash = read4(batch, B.SPRING + 4 * l), read4(batch, B.DASH + 4 * l)
+            write4(
+                rows, 4 * k,
+                vec4_of(component(spring, 0), component(dash, 0), component(dash, 3), component(spring, 3)),
+            )  # fmt: skip
+        else:
+            width = rows.shape[1]
+            copy4(rows, width * k, batch, B.SPRING + 4 * l)
+            copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
+
+    return lane_to_row
 
 
 @inner(fastmath=FAST)
@@ -80,27 +93,24 @@ def dashpot_row(k: int, eta: Any) -> int:
     return k if len(eta) > 1 else 0
 
 
-@inner(fastmath=FAST)
-def begin_row(
-    k: int,
-    i: int,
-    j: int,
-    rotation: int,
-    kind: int,
-    c: Any,
-    m: Any,
-    x: Any,
-    inertia: Any,
-    eta: Any,
-    rows: Any,
-) -> None:
-    """Clear the row of candidate k, which may touch now and did not before, and set its springs.
+@cache
+def make_begin_row(kind: int) -> Any:
+    """Build begin_row for one kind of springs (memory_rows.py)."""
+    set_springs = make_set_springs(kind)
 
-    Where all are alike every thread writes the same numbers to the same place.
-    """
-    for a in range(rows.shape[1]):
-        rows[k, a] = 0.0
-    set_springs(dashpot_row(k, eta), i, j, rotation, kind, c, m, x, inertia, eta)
+    @inner(fastmath=FAST)
+    def begin_row(
+        k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
+    ) -> None:
+        """Clear the row of candidate k, which may touch now and did not before, and set its springs.
+
+        Where all are alike every thread writes the same numbers to the same place.
+        """
+        for a in range(rows.shape[1]):
+            rows[k, a] = 0.0
+        set_springs(dashpot_row(k, eta), i, j, rotation, c, m, x, inertia, eta)
+
+    return begin_row
 
 
 @inner(fastmath=FAST)

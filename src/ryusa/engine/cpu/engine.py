@@ -11,6 +11,7 @@ import numpy as np
 from ryusa.engine.cpu.arrays import (
     AccountArrays,
     GrainArrays,
+    StepArrays,
     rows_by_id,
     rows_by_place,
     same_column,
@@ -20,7 +21,7 @@ from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.rigid_bodies import body_arrays, body_shares, body_state, place_members, wrap_bodies
-from ryusa.engine.cpu.time_loop import make_run
+from ryusa.engine.cpu.time_loop import StepPieces, pieces_of, run
 from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
@@ -44,6 +45,7 @@ from ryusa.engine.shared.energy_account import (
     tally_of,
 )
 from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
+from ryusa.engine.shared.layout import film_reach
 from ryusa.engine.shared.materials import common_parameters, material_arrays
 from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
@@ -105,7 +107,7 @@ class CpuEngine:
         self._n, self._step, self._t = n, state.step, state.t
         self._variant = variant_of(scene)
         self._choice = choice_of(scene)
-        self._run = make_run(self._variant)
+        self._compiled: StepPieces | None = None
         blocks = blocks_of(n, scene.plane_case)
         self._layout = BlockLayout(scene, blocks, self._variant)
         self._parameters = common_parameters(scene)
@@ -267,30 +269,19 @@ class CpuEngine:
     def _advance(self, n_steps: int) -> Flags:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
-            arguments = (
-                threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._parameters,
-                self._material, self._table, layout.block_start, self._n, layout.n_solid, self._grains,
-                layout.walls, self._pairs, self._candidates.pairs,
+            pieces, held = self._pieces(), [self._held(k) for k in range(threads)]
+            shared = (
+                threads, n_steps, self._step, self._travel, film_reach(layout.scene), np.zeros(1, np.int64),
+                pieces,
             )  # fmt: skip
-            more = (self._choice, self._candidates.schedule, self._bodies)
-            others = (
-                [
-                    self._pool.submit(
-                        self._run,
-                        k,
-                        *arguments,
-                        self._candidates.spares[k],
-                        self._accounts,
-                        self._work[k],
-                        *more,
-                    )
-                    for k in range(1, threads)
-                ]
+            more = (layout.walls.faces, self._bodies)
+            others = [
+                self._pool.submit(run, k, *shared, held[k], *more, self._work[k], self._candidates.schedule)
+                for k in range(1, threads)
                 if self._pool
-                else []
-            )
-            done, self._travel, stop = self._run(
-                0, *arguments, self._candidates.spares[0], self._accounts, self._work[0], *more
+            ]
+            done, self._travel, stop = run(
+                0, *shared, held[0], *more, self._work[0], self._candidates.schedule
             )
             for other in others:
                 other.result()
@@ -315,6 +306,21 @@ class CpuEngine:
                     fault_of(self._accounts.stats, self._parameters, layout.scene.contact, self._step - 1)
                 )
         return Flags()
+
+    def _held(self, thread: int) -> StepArrays:
+        """All that a thread reads and writes in a step."""
+        layout = self._layout
+        return StepArrays(
+            self._n, layout.n_solid, self._variant.plane_case, self._parameters, self._material, self._table,
+            layout.block_start, self._choice, self._grains, layout.walls, self._pairs, self._candidates.pairs,
+            self._candidates.spares[thread], self._accounts, self._bodies,
+        )  # fmt: skip
+
+    def _pieces(self) -> StepPieces:
+        """The compiled pieces of a step, which the types of its arrays decide."""
+        if self._compiled is None:
+            self._compiled = pieces_of(self._variant, self._choice, self._held(0), self._work[0])
+        return self._compiled
 
     def _rebuild_list(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
@@ -358,10 +364,10 @@ class CpuEngine:
         return place_of, lost
 
     def _prune(self, memory: ContactMemory, place_of: np.ndarray) -> None:
+        displacement = self._fastest_displacement()
         self._candidates.begin(
-            self._grains, self._pairs, self._skin, self._fastest_displacement(), self._parameters, memory,
-            place_of, self._share,
-        )  # fmt: skip
+            self._pieces().prune, self._held, self._skin, displacement, memory, place_of, self._share
+        )
 
     def _share(self, task: Callable[[int, int], Any]) -> list[Any]:
         """Results of a task for blocks first..last-1, in order, one for each thread."""

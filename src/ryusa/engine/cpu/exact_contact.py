@@ -7,10 +7,11 @@ that a contact gains from beginning or ending between two steps.
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.contact_events import begin_and_end
+from ryusa.engine.cpu.contact_events import make_begin_and_end
 from ryusa.engine.cpu.contact_rows import springs_of_row
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -162,36 +163,27 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
     return tangential_of_maps
 
 
-# Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
-_kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
-_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
+@cache
+def make_compute_exactly(plane: bool, mixed: bool) -> Any:
+    """Build compute_exactly for a plane or for space, and for one material or several."""
+    kinematics_of_maps, tangential_of_maps = _make_kinematics(plane), _make_tangential(plane, mixed)
+    begin_and_end = make_begin_and_end(plane, mixed)
 
+    @inner(fastmath=FAST)
+    def compute_exactly(
+        rotation: int, choice: LawChoice, m: int, lanes: int, hdt: float, most: float, selected: Any,
+        i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, ids: Any, material: Any, table: Any, c: Any,
+        batch: Any,
+    ) -> None:  # fmt: skip
+        """Forces, torques and work of m lanes, as `pair_batch.compute`; `lanes` in whole vectors."""
+        total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
+        kinematics_of_maps(lanes, most, choice.tension != 0, c, batch)
+        begin_and_end(
+            rotation, choice, m, selected, i_of, j_of, mass, inertia, w, ids, material, table, c, batch
+        )
+        tangential_of_maps(total, drop, whole, lanes, hdt, c, batch)
 
-@inner(fastmath=FAST, forceinline=True)
-def compute_exactly(
-    flat: int | None, rotation: int, choice: LawChoice, m: int, lanes: int, hdt: float, most: float,
-    selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, ids: Any, material: Any,
-    table: Any, c: Any, batch: Any,
-) -> None:  # fmt: skip
-    """Forces, torques and work of the first m lanes, as `pair_batch.compute`; `lanes` in whole vectors."""
-    total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
-    if flat is not None:
-        _kinematics_plane(lanes, most, choice.tension != 0, c, batch)
-    else:
-        _kinematics_space(lanes, most, choice.tension != 0, c, batch)
-    begin_and_end(
-        flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, w, ids, material, table, c, batch
-    )  # fmt: skip
-    if table is not None:
-        if flat is not None:
-            _tangential_plane_mixed(total, drop, whole, lanes, hdt, c, batch)
-        else:
-            _tangential_space_mixed(total, drop, whole, lanes, hdt, c, batch)
-    elif flat is not None:
-        _tangential_plane(total, drop, whole, lanes, hdt, c, batch)
-    else:
-        _tangential_space(total, drop, whole, lanes, hdt, c, batch)
+    return compute_exactly
 
 
 @inner(fastmath=FAST)

@@ -5,6 +5,7 @@ copied to the batch (fluid_layout.py), then each law runs over all lanes.
 """
 # ruff: noqa: E741  (l is a lane)
 
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import fluid_layout as W
@@ -13,8 +14,8 @@ from ryusa.engine.cpu.simd.vec4 import copy4, read4, vec4_of, write4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import STRESS, height_in_profile, length
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws._family import dispatch_lanes
+from ryusa.engine.shared.variant import WaterLaws
+from ryusa.laws._family import Family, lanes_of_law
 from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
 from ryusa.laws.families import Drag, DragOfForm, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.laws.grain_step import flow_force
@@ -98,31 +99,20 @@ def _to_torque(l: int, batch: Any, k: float) -> None:
     batch[W.K_T + l] = k
 
 
-_profile_lanes = dispatch_lanes(
-    Profile, ("z", "u_star", "k_rough", "nu", "speed"), _profile_arguments, _to_speed, W.LANES,
-    unasked=(Profile.NONE, Profile.COLUMN),
-)  # fmt: skip
-_hindrance_lanes = dispatch_lanes(
-    Hindrance, ("slip", "eps", "exponent", "d", "nu", "stress"), _hindrance_arguments, _to_hindrance, W.LANES,
-    answers=2,
-)  # fmt: skip
-_drag_lanes = dispatch_lanes(Drag, ("re", "c_d"), _drag_arguments, _to_drag, W.LANES, unasked=(Drag.NONE,))
-_form_lanes = dispatch_lanes(
-    DragOfForm, ("re", "stokes", "newton", "sphericity"), _form_arguments, _to_drag, W.LANES,
-    unasked=(DragOfForm.SPHERE,),
-)  # fmt: skip
-_lift_lanes = dispatch_lanes(
-    Lift, ("top", "bottom", "slip", "shear", "d", "nu", "rho_w", "a_2", "c_l"), _lift_arguments, _to_lift,
-    W.LANES, answers=2, unasked=(Lift.NONE,),
-)  # fmt: skip
-_magnus_lanes = dispatch_lanes(
-    Magnus, ("slip", "spin", "d", "nu", "rho_w"), _magnus_arguments, _to_magnus, W.LANES,
-    unasked=(Magnus.NONE,),
-)  # fmt: skip
-_torque_lanes = dispatch_lanes(
-    WaterTorque, ("spin", "d", "nu", "rho_w"), _torque_arguments, _to_torque, W.LANES,
-    unasked=(WaterTorque.NONE,),
-)  # fmt: skip
+# what the laws of each family are given, in order, and how lanes are read and written
+_OF_PROFILE = ("z", "u_star", "k_rough", "nu", "speed"), _profile_arguments, _to_speed
+_OF_HINDRANCE = ("slip", "eps", "exponent", "d", "nu", "stress"), _hindrance_arguments, _to_hindrance
+_OF_DRAG = ("re", "c_d"), _drag_arguments, _to_drag
+_OF_FORM = ("re", "stokes", "newton", "sphericity"), _form_arguments, _to_drag
+_OF_LIFT = ("top", "bottom", "slip", "shear", "d", "nu", "rho_w", "a_2", "c_l"), _lift_arguments, _to_lift
+_OF_MAGNUS = ("slip", "spin", "d", "nu", "rho_w"), _magnus_arguments, _to_magnus
+_OF_TORQUE = ("spin", "d", "nu", "rho_w"), _torque_arguments, _to_torque
+
+
+@cache
+def _lanes(choice: Family, given: tuple[tuple[str, ...], Any, Any]) -> Any:
+    """The loop of one law over lanes; None for a choice without a law."""
+    return None if choice.function is None else lanes_of_law(choice, *given, W.LANES)
 
 
 @inner(fastmath=FAST)
@@ -208,13 +198,6 @@ def _torque_in_water(m: int, batch: Any) -> None:
         batch[W.K_T + l] *= batch[W.SHARE + l]
 
 
-@inner()
-def _drag_of_form(choice: LawChoice, m: int, nu: float, form: Any, batch: Any) -> None:
-    """Drag coefficients of bodies that are not those of spheres."""
-    if choice.drag_of_form:
-        _form_lanes(choice.drag_of_form, m, batch, (nu, form))
-
-
 @inner(fastmath=FAST, forceinline=True)
 def _clear(first: int, rows: int, batch: Any) -> None:
     """Rows of what the scene goes without."""
@@ -222,91 +205,126 @@ def _clear(first: int, rows: int, batch: Any) -> None:
         batch[first + l] = 0.0
 
 
-@inner(fastmath=FAST)
-def forces_in_column(
-    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, v: Any, w: Any, m_all: Any, m_bare: Any,
-    fluid: Any, batch: Any, form: Any = None,
-) -> None:  # fmt: skip
-    """Coefficients and forces of the column of water on grains lo..hi-1, at most LANES, on as many lanes.
+@cache
+def make_forces_in_column(laws: WaterLaws, bodies: bool) -> Any:
+    """Build forces_in_column for laws by number; of rigid bodies, with the drag of their form."""
+    drag, lift, magnus, torque = laws.drag, laws.lift, laws.magnus, laws.torque
+    stress = laws.buoyancy == STRESS
+    hindrance_lanes = _lanes(Hindrance(laws.hindrance), _OF_HINDRANCE)
+    formed, drag_lanes = _drag_lanes(laws, bodies)
+    lift_lanes, magnus_lanes = _lanes(Lift(lift), _OF_LIFT), _lanes(Magnus(magnus), _OF_MAGNUS)
+    torque_lanes = _lanes(WaterTorque(torque), _OF_TORQUE)
 
-    `form` of bodies: columns of `RigidBodies.drag_form`, by lane.
-    """
-    nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
-    for i in range(lo, hi):
-        l = i - lo
-        write4(batch, W.SLIP + 4 * l, read4(fluid, N_SAMPLED * i) - read4(v, 8 * i))
-        copy4(batch, W.FLUID + 4 * l, fluid, N_SAMPLED * i + 4)
-        copy4(batch, W.SPIN + 4 * l, w, 8 * i)
-        share = fluid[i, SUBMERGED]
-        batch[W.SHARE + l] = share
-        batch[W.ADDED + l] = (m_all[i] - m_bare[i]) * share  # water moves along with what of a grain is in it
-    m = (hi - lo + 7) // 8 * 8
-    _fill_column(m, batch)
-    _fill_spin(m, True, batch)
-    if choice.drag == 0:
-        _clear(W.K_D, 1, batch)
-    else:
-        _hindrance_lanes(choice.hindrance, m, batch, (c[P.HINDRANCE], nu, choice.buoyancy == STRESS))
-        _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
-        if form is not None:
-            _drag_of_form(choice, m, nu, form, batch)
-        _drag_over_slip(m, rho_w, a_2, batch)
-    if choice.lift == 0 and choice.magnus == 0:
-        _clear(W.LIFT, 4, batch)
-    else:
-        if choice.lift == 0:
-            _clear(W.NORMAL, 2, batch)
-        else:
-            _lift_lanes(choice.lift, m, batch, (nu, rho_w, a_2, c[P.C_L]))
-        if choice.magnus == 0:
-            _clear(W.K_M, 1, batch)
-        else:
-            _magnus_lanes(choice.magnus, m, batch, (nu, rho_w))
-        _lift_and_magnus(m, batch)
-    if rotation and choice.torque:
-        _torque_lanes(choice.torque, m, batch, (nu, rho_w))
-        _torque_in_water(m, batch)
+    @inner(fastmath=FAST)
+    def forces_in_column(
+        lo: int, hi: int, c: Any, v: Any, w: Any, m_all: Any, m_bare: Any, fluid: Any, batch: Any, form: Any
+    ) -> None:
+        """Coefficients and forces of the column of water on grains lo..hi-1, at most LANES, on as many lanes.
 
-
-@inner(fastmath=FAST)
-def forces_in_profile(
-    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, x: Any, v: Any, w: Any, batch: Any,
-    form: Any = None,
-) -> None:  # fmt: skip
-    """As `forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
-    nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
-    still = vec4_of(0.0, 0.0, 0.0, 0.0)
-    for i in range(lo, hi):
-        l = i - lo
-        write4(batch, W.SLIP + 4 * l, still - read4(v, 8 * i))
-        copy4(batch, W.FLUID + 4 * l, x, 4 * i)
-        if rotation and choice.torque:
+        `form` of bodies: columns of `RigidBodies.drag_form`, by lane.
+        """
+        nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
+        for i in range(lo, hi):
+            l = i - lo
+            write4(batch, W.SLIP + 4 * l, read4(fluid, N_SAMPLED * i) - read4(v, 8 * i))
+            copy4(batch, W.FLUID + 4 * l, fluid, N_SAMPLED * i + 4)
             copy4(batch, W.SPIN + 4 * l, w, 8 * i)
-    m = (hi - lo + 7) // 8 * 8
-    _fill_heights(m, choice.above, c[P.Z_ZERO], c[P.DEPTH], batch)
-    if choice.drag == 0:
-        _clear(W.K_D, 1, batch)
-    else:
-        _profile_lanes(choice.profile, m, batch, (c[P.U_STAR], c[P.K_ROUGH], nu, c[P.U_UNIFORM]))
-        _fill_profile(m, batch)
-        _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
-        if form is not None:
-            _drag_of_form(choice, m, nu, form, batch)
-        _drag_of_isolated(m, rho_w, a_2, batch)
-    if rotation and choice.torque:
-        _fill_spin(m, False, batch)
-        _torque_lanes(choice.torque, m, batch, (nu, rho_w))
-        _torque_in_water(m, batch)
+            share = fluid[i, SUBMERGED]
+            batch[W.SHARE + l] = share
+            # water moves along with what of a grain is in it
+            batch[W.ADDED + l] = (m_all[i] - m_bare[i]) * share
+        m = (hi - lo + 7) // 8 * 8
+        _fill_column(m, batch)
+        _fill_spin(m, True, batch)
+        if drag == 0:
+            _clear(W.K_D, 1, batch)
+        else:
+            hindrance_lanes(m, batch, (c[P.HINDRANCE], nu, stress))
+            if formed:
+                drag_lanes(m, batch, (nu, form))
+            else:
+                drag_lanes(m, batch, (nu, c[P.C_D]))
+            _drag_over_slip(m, rho_w, a_2, batch)
+        if lift == 0 and magnus == 0:
+            _clear(W.LIFT, 4, batch)
+        else:
+            if lift == 0:
+                _clear(W.NORMAL, 2, batch)
+            else:
+                lift_lanes(m, batch, (nu, rho_w, a_2, c[P.C_L]))
+            if magnus == 0:
+                _clear(W.K_M, 1, batch)
+            else:
+                magnus_lanes(m, batch, (nu, rho_w))
+            _lift_and_magnus(m, batch)
+        if torque:
+            torque_lanes(m, batch, (nu, rho_w))
+            _torque_in_water(m, batch)
+
+    return forces_in_column
 
 
-@inner(fastmath=FAST, forceinline=True)
-def forces_of_water(
-    column: int | None, choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, grains: GrainArrays,
-    batch: Any,
-) -> None:  # fmt: skip
-    """Coefficients and forces on grains lo..hi-1, at most LANES, in the water that the scene has."""
-    x, v, w, m, m_bare = grains.x, grains.v, grains.w, grains.m, grains.m_bare
-    if column is not None:
-        forces_in_column(choice, rotation, lo, hi, c, v, w, m, m_bare, grains.fluid, batch)
-    else:
-        forces_in_profile(choice, rotation, lo, hi, c, x, v, w, batch)
+@cache
+def make_forces_in_profile(laws: WaterLaws, bodies: bool) -> Any:
+    """As `make_forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
+    drag, torque, above = laws.drag, laws.torque, laws.above
+    profile_lanes, torque_lanes = (
+        _lanes(Profile(laws.profile), _OF_PROFILE),
+        _lanes(WaterTorque(torque), _OF_TORQUE),
+    )
+    formed, drag_lanes = _drag_lanes(laws, bodies)
+
+    @inner(fastmath=FAST)
+    def forces_in_profile(lo: int, hi: int, c: Any, x: Any, v: Any, w: Any, batch: Any, form: Any) -> None:
+        """Coefficients and forces on grains lo..hi-1, at most LANES, on as many lanes."""
+        nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
+        still = vec4_of(0.0, 0.0, 0.0, 0.0)
+        for i in range(lo, hi):
+            l = i - lo
+            write4(batch, W.SLIP + 4 * l, still - read4(v, 8 * i))
+            copy4(batch, W.FLUID + 4 * l, x, 4 * i)
+            if torque:
+                copy4(batch, W.SPIN + 4 * l, w, 8 * i)
+        m = (hi - lo + 7) // 8 * 8
+        _fill_heights(m, above, c[P.Z_ZERO], c[P.DEPTH], batch)
+        if drag == 0:
+            _clear(W.K_D, 1, batch)
+        else:
+            profile_lanes(m, batch, (c[P.U_STAR], c[P.K_ROUGH], nu, c[P.U_UNIFORM]))
+            _fill_profile(m, batch)
+            if formed:
+                drag_lanes(m, batch, (nu, form))
+            else:
+                drag_lanes(m, batch, (nu, c[P.C_D]))
+            _drag_of_isolated(m, rho_w, a_2, batch)
+        if torque:
+            _fill_spin(m, False, batch)
+            torque_lanes(m, batch, (nu, rho_w))
+            _torque_in_water(m, batch)
+
+    return forces_in_profile
+
+
+def _drag_lanes(laws: WaterLaws, bodies: bool) -> tuple[bool, Any]:
+    """Whether drag coefficients are those of forms of rigid bodies, and their loop over lanes."""
+    if bodies and DragOfForm(laws.drag_of_form) is not DragOfForm.SPHERE:
+        return True, _lanes(DragOfForm(laws.drag_of_form), _OF_FORM)
+    return False, _lanes(Drag(laws.drag), _OF_DRAG)
+
+
+@cache
+def make_forces_of_water(column: bool, laws: WaterLaws) -> Any:
+    """Build forces_of_water(lo, hi, c, grains, batch) for the water that a scene has."""
+    in_column: Any = make_forces_in_column(laws, False) if column else None
+    in_profile: Any = None if column else make_forces_in_profile(laws, False)
+
+    @inner(fastmath=FAST, forceinline=True)
+    def forces_of_water(lo: int, hi: int, c: Any, grains: GrainArrays, batch: Any) -> None:
+        """Coefficients and forces on grains lo..hi-1, at most LANES."""
+        x, v, w, m, m_bare = grains.x, grains.v, grains.w, grains.m, grains.m_bare
+        if column:
+            in_column(lo, hi, c, v, w, m, m_bare, grains.fluid, batch, None)
+        else:
+            in_profile(lo, hi, c, x, v, w, batch, None)
+
+    return forces_of_water

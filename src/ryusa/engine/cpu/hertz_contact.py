@@ -6,6 +6,7 @@ place of the force without its spring: from it follow spring and stiffness then.
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
@@ -145,37 +146,22 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
     return tangential_hertz
 
 
-# Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
-_kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_normal_force, _normal_force_mixed = _make_normal(False), _make_normal(True)
-_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
-_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
+@cache
+def make_compute_hertz(plane: bool, mixed: bool) -> Any:
+    """Build compute_hertz for a plane or for space, and for one material or several."""
+    kinematics_hertz, normal_hertz = _make_kinematics(plane), _make_normal(mixed)
+    tangential_hertz = _make_tangential(plane, mixed)
 
+    @inner(fastmath=FAST)
+    def compute_hertz(choice: LawChoice, m: int, hdt: float, most: float, c: Any, batch: Any) -> None:
+        """Forces, torques and work of the first m lanes, as `pair_batch.compute`."""
+        least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
+        total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
+        kinematics_hertz(m, most, c, batch)
+        normal_hertz(least, unloading_rescales(choice.unloading), m, hdt, c, batch)
+        tangential_hertz(total, drop, whole, least, m, hdt, c, batch)
 
-@inner(fastmath=FAST, forceinline=True)
-def compute_hertz(
-    flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, table: Any, c: Any, batch: Any
-) -> None:
-    """Forces, torques and work of the first m lanes, as `pair_batch.compute`."""
-    least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
-    total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
-    rescaled = unloading_rescales(choice.unloading)
-    if flat is not None:
-        _kinematics_plane(m, most, c, batch)
-        if table is not None:
-            _normal_force_mixed(least, rescaled, m, hdt, c, batch)
-            _tangential_plane_mixed(total, drop, whole, least, m, hdt, c, batch)
-        else:
-            _normal_force(least, rescaled, m, hdt, c, batch)
-            _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
-    else:
-        _kinematics_space(m, most, c, batch)
-        if table is not None:
-            _normal_force_mixed(least, rescaled, m, hdt, c, batch)
-            _tangential_space_mixed(total, drop, whole, least, m, hdt, c, batch)
-        else:
-            _normal_force(least, rescaled, m, hdt, c, batch)
-            _tangential_space(total, drop, whole, least, m, hdt, c, batch)
+    return compute_hertz
 
 
 @inner(fastmath=FAST)

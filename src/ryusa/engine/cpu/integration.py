@@ -5,19 +5,26 @@ What is fourth in a row stays what it is: the radius behind a position or a spin
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
+from ryusa.compiled.function import compiled
+from ryusa.compiled.piece import taken
 from ryusa.engine.cpu import fluid_layout as W
-from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
-from ryusa.engine.cpu.fluid_forces import forces_of_water
-from ryusa.engine.cpu.fluid_work import add_fluid, begin_fluid_work, book_fluid_work, end_fluid_work
+from ryusa.engine.cpu.fluid_forces import make_forces_of_water
+from ryusa.engine.cpu.fluid_work import (
+    begin_fluid_work,
+    end_fluid_work,
+    make_add_fluid,
+    make_book_fluid_work,
+)
 from ryusa.engine.cpu.simd.vec4 import add4, component, fill4, read4, vec4_of, with_fourth, write4
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import close_fluid_interval
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
-from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.engine.shared.variant import MotionKind
 from ryusa.laws.grain_step import (
     kinetic_energy,
     potential_energy,
@@ -58,89 +65,92 @@ def gather_incoming(i: int, active: Any, incoming: Any, incoming_start: Any, f: 
                 fill4(film, 4 * q, 0.0)
 
 
-@inner(fastmath=FAST, forceinline=True)
-def integrate(
-    variant: KernelVariant,
-    water: int | None,
-    column: int | None,
-    choice: LawChoice,
-    lo: int,
-    hi: int,
-    begins: bool,
-    last: bool,
-    c: Any,
-    grains: GrainArrays,
-    pairs: PairArrays,
-    bodies: Any,
-    batch: Any,
-    account: Any,
-    stats: Any,
-) -> None:
-    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
-    # One function: the state of a grain stays in registers. Members of bodies only gather (rigid_bodies.py)
-    x, v, w, v_pruned, ids, image = grains.x, grains.v, grains.w, grains.v_pruned, grains.ids, grains.image
-    m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
-    per_m, per_inertia = grains.per_m, grains.per_inertia
-    f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
-    dt, film, n_touching = c[P.DT], grains.film, grains.n_touching
-    half = 0.0 if begins else 0.5 * dt
-    speed_2 = spin_2 = velocity_change_2 = 0.0
-    gravity = vec4_of(c[P.G_X], 0.0 if variant.plane_case else c[P.G_Y], c[P.G_Z], 0.0)
-    close_fluid_interval(account, stats)
-    if last:
-        stats[S.KINETIC] = stats[S.SPIN] = stats[S.POTENTIAL] = 0.0
-    torque = bool(variant.rotation) and choice.torque != 0
-    if water is not None:
-        begin_fluid_work(batch)
-    for i in range(lo, hi):
-        l = (i - lo) % W.LANES
-        if water is not None and l == 0:
-            forces_of_water(column, choice, variant.rotation, i, min(i + W.LANES, hi), c, grains, batch)
-        gather_incoming(i, active, incoming, incoming_start, f, film)
-        push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
-        if variant.rolling or variant.events:
-            n_touching[i] = int(component(turn, 3))
-        if bodies is not None:  # noqa: SIM102 (the outer test alone is taken out by the compiler)
-            if bodies.member[ids[i]]:
-                continue
-        fill4(f, 8 * i, 0.0)
-        fill4(f, 8 * i + 4, 0.0)
-        x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
-        drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
-        if water is not None:
-            push, turn, drag = add_fluid(variant, column, torque, i, l, push, turn, film, batch)
-            if column is not None:
-                inverse = 1.0 / (m_bare[i] + batch[W.ADDED + l])
-        x_new, after = translation_step(x_new, before, push, drag, m_weight[i] * gravity, inverse, dt)
-        whirl = spin
-        if variant.rotation:  # the count of contacts, fourth, turns nothing
-            whirl = rotation_step(spin, with_fourth(turn, 0.0), per_inertia[i], dt)
-        if water is not None:
-            book_fluid_work(
-                variant, column, torque, i, l, half, dt, before, after, spin, whirl, grains.impulse, film,
-                batch,
-            )  # fmt: skip
+@cache
+def make_integrate(kind: MotionKind) -> Any:
+    """Build the piece that moves the grains of a block: integrate(lo, hi, begins, last, b, work, held)."""
+    plane, rotation, counted = bool(kind.plane_case), bool(kind.rotation), bool(kind.counted)
+    water, column, of_bodies = bool(kind.water), bool(kind.column), bool(kind.bodies)
+    forces_of_water: Any = make_forces_of_water(column, kind.laws) if water else None
+    add_fluid = make_add_fluid(column, bool(kind.film), kind.laws.torque != 0)
+    book_fluid_work = make_book_fluid_work(column, bool(kind.film), kind.laws.torque != 0)
+
+    @compiled(fastmath=FAST)
+    def integrate(lo: int, hi: int, begins: bool, last: bool, b: int, work: Any, held: Any) -> None:
+        """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+        # One function: the state of a grain stays in registers. Members of bodies only gather
+        held, work = taken(held), taken(work)
+        c, grains, pairs, batch = held.c, held.grains, held.pairs, work.water
+        account, stats = held.accounts.terms[b], held.accounts.stats[b]
+        x, v, w, v_pruned, ids, image = (
+            grains.x,
+            grains.v,
+            grains.w,
+            grains.v_pruned,
+            grains.ids,
+            grains.image,
+        )
+        m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
+        per_m, per_inertia = grains.per_m, grains.per_inertia
+        f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
+        dt, film, n_touching = c[P.DT], grains.film, grains.n_touching
+        half = 0.0 if begins else 0.5 * dt
+        speed_2 = spin_2 = velocity_change_2 = 0.0
+        gravity = vec4_of(c[P.G_X], 0.0 if plane else c[P.G_Y], c[P.G_Z], 0.0)
+        close_fluid_interval(account, stats)
         if last:
-            stats[S.KINETIC] += kinetic_energy_of_row(1.0 / inverse, before, after)
-            stats[S.SPIN] += kinetic_energy_of_row(inertia[i], spin, whirl) if variant.rotation else 0.0
-            stats[S.POTENTIAL] += potential_energy(
-                m_weight[i], c[P.G_X], c[P.G_Y], c[P.G_Z], unwrapped(x[i, 0], image[i, 0], c[P.PERIOD_X]),
-                unwrapped(x[i, 1], image[i, 1], c[P.PERIOD_Y]), x[i, 2],
-            )  # fmt: skip
-        write4(x, 4 * i, x_new)
-        write4(v, 8 * i, after)
-        fast, fast_spin = square_length(after), 0.0
-        if variant.rotation:
-            write4(w, 8 * i, whirl)
-            fast_spin = square_length(whirl)
-        if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
-            stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
-        speed_2, spin_2 = max(speed_2, fast), max(spin_2, fast_spin)
-        velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
-    if water is not None:
-        end_fluid_work(batch, account, stats)
-    stats[S.SPEED_MOVED], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
-    stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
+            stats[S.KINETIC] = stats[S.SPIN] = stats[S.POTENTIAL] = 0.0
+        if water:
+            begin_fluid_work(batch)
+        for i in range(lo, hi):
+            l = (i - lo) % W.LANES
+            if water and l == 0:
+                forces_of_water(i, min(i + W.LANES, hi), c, grains, batch)
+            gather_incoming(i, active, incoming, incoming_start, f, film)
+            push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
+            if counted:
+                n_touching[i] = int(component(turn, 3))
+            if of_bodies and held.bodies.member[ids[i]]:
+                continue
+            fill4(f, 8 * i, 0.0)
+            fill4(f, 8 * i + 4, 0.0)
+            x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
+            drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
+            if water:
+                push, turn, drag = add_fluid(i, l, push, turn, film, batch)
+                if column:
+                    inverse = 1.0 / (m_bare[i] + batch[W.ADDED + l])
+            x_new, after = translation_step(x_new, before, push, drag, m_weight[i] * gravity, inverse, dt)
+            whirl = spin
+            if rotation:  # the count of contacts, fourth, turns nothing
+                whirl = rotation_step(spin, with_fourth(turn, 0.0), per_inertia[i], dt)
+            if water:
+                book_fluid_work(
+                    i, l, half, dt, before, after, spin, whirl, grains.impulse, film,
+                    batch,
+                )  # fmt: skip
+            if last:
+                stats[S.KINETIC] += kinetic_energy_of_row(1.0 / inverse, before, after)
+                stats[S.SPIN] += kinetic_energy_of_row(inertia[i], spin, whirl) if rotation else 0.0
+                stats[S.POTENTIAL] += potential_energy(
+                    m_weight[i], c[P.G_X], c[P.G_Y], c[P.G_Z], unwrapped(x[i, 0], image[i, 0], c[P.PERIOD_X]),
+                    unwrapped(x[i, 1], image[i, 1], c[P.PERIOD_Y]), x[i, 2],
+                )  # fmt: skip
+            write4(x, 4 * i, x_new)
+            write4(v, 8 * i, after)
+            fast, fast_spin = square_length(after), 0.0
+            if rotation:
+                write4(w, 8 * i, whirl)
+                fast_spin = square_length(whirl)
+            if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
+                stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
+            speed_2, spin_2 = max(speed_2, fast), max(spin_2, fast_spin)
+            velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
+        if water:
+            end_fluid_work(batch, account, stats)
+        stats[S.SPEED_MOVED], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
+        stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
+
+    return integrate
 
 
 @inner(fastmath=FAST)

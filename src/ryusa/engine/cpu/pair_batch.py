@@ -11,10 +11,11 @@ or left within a step is booked for what the half interval takes beyond what it 
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row, lane_to_row, row_to_lane
+from ryusa.engine.cpu.contact_rows import dashpot_row, make_begin_row, make_lane_to_row, make_row_to_lane
 from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation, set_separation_of_any
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
 from ryusa.engine.shared import memory_rows as M
@@ -35,97 +36,111 @@ from ryusa.laws.geometry import overlap as overlap_of
 from ryusa.laws.geometry import wrap
 
 
-@inner(fastmath=FAST, forceinline=True)
-def filter_pairs(
-    plane_case: int, walled: int | None, reach_on: float, first: int, m: int, waiting: int, n_solid: int,
-    c: Any, x: Any, i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, slot: Any,
-    separation: Any, inside: Any, selected: Any,
-) -> int:  # fmt: skip
-    """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
+@cache
+def make_filter_pairs(walled: bool) -> Any:
+    """Build filter_pairs for scenes with faces or without."""
 
-    `selected` gets their numbers; `separation` and `inside` are workspace.
-    """
-    for l in range(m):
-        k = first + l
-        if walled is None:
-            set_separation(l, i_of[k], j_of[k], n_solid, x, points, normals, separation)
-        else:
-            set_separation_of_any(l, k, i_of[k], j_of[k], n_solid, x, points, normals, met, slot, separation)
-    mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
-    for l in range(m):  # no branch: which pairs touch is not predictable
-        selected[waiting] = first + l
-        waiting += int(inside[l] > 0.0) | int(touching[first + l] != 0)
-    return waiting
+    @inner(fastmath=FAST)
+    def filter_pairs(
+        plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
+        i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, slot: Any, separation: Any,
+        inside: Any, selected: Any,
+    ) -> int:  # fmt: skip
+        """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
+
+        `selected` gets their numbers; `separation` and `inside` are workspace.
+        """
+        for l in range(m):
+            k = first + l
+            if not walled:
+                set_separation(l, i_of[k], j_of[k], n_solid, x, points, normals, separation)
+            else:
+                set_separation_of_any(
+                    l, k, i_of[k], j_of[k], n_solid, x, points, normals, met, slot, separation
+                )
+        mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
+        for l in range(m):  # no branch: which pairs touch is not predictable
+            selected[waiting] = first + l
+            waiting += int(inside[l] > 0.0) | int(touching[first + l] != 0)
+        return waiting
+
+    return filter_pairs
 
 
-@inner(fastmath=FAST, forceinline=True)
-def gather(
-    rotation: int, kind: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
-    c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
-    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, ids: Any,
-    material: Any, table: Any, batch: Any,
-) -> int:  # fmt: skip
-    """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
+@cache
+def make_gather(springs: int, short: bool, walled: bool) -> Any:
+    """Build gather for a kind of springs, the length of rows (contact_rows.py), and scenes with faces."""
+    hertz, row_to_lane = springs == M.HERTZ, make_row_to_lane(short)
+    begin_row = make_begin_row(springs)
 
-    Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `kind` is that of the springs
-    (memory_rows.py). `table` has a row of parameters for each two materials, None
-    where there is one material. `face_lanes` gets the lanes of
-    faces, and in place LANES their number.
-    """
-    n_face = 0
-    for l in range(m):
-        k = selected[l]
-        i, j = i_of[k], j_of[k]
-        if table is not None:
-            a, b = material_of(i, ids, material), material_of(j, ids, material)
-            if not touching[k]:
-                begin_row(k, i, j, rotation, kind, table[a, b], mass, x, inertia, eta, rows)
-            batch[B.MU + l] = table[a, b, P.MU]
-            if kind == M.HERTZ:
-                batch[B.MINDLIN + l] = table[a, b, P.MINDLIN]
-        elif not touching[k]:
-            begin_row(k, i, j, rotation, kind, c, mass, x, inertia, eta, rows)
-        if walled is None:
-            set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
-        else:
-            set_separation_of_any(
-                B.SEPARATION // 4 + l, k, i, j, n_solid, x, points, normals, met, slot, batch
+    @inner(fastmath=FAST)
+    def gather(
+        rotation: int, m: int, selected: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any, v: Any,
+        w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any, eta: Any, rows: Any, met: Any,
+        slot: Any, face_lanes: Any, ids: Any, material: Any, table: Any, batch: Any,
+    ) -> int:  # fmt: skip
+        """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
+
+        Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `table` has a row of
+        parameters for each two materials, None where there is one material. `face_lanes` gets the lanes of
+        faces, and in place LANES their number.
+        """
+        n_face = 0
+        for l in range(m):
+            k = selected[l]
+            i, j = i_of[k], j_of[k]
+            if table is not None:
+                a, b = material_of(i, ids, material), material_of(j, ids, material)
+                if not touching[k]:
+                    begin_row(k, i, j, rotation, table[a, b], mass, x, inertia, eta, rows)
+                batch[B.MU + l] = table[a, b, P.MU]
+                if hertz:
+                    batch[B.MINDLIN + l] = table[a, b, P.MINDLIN]
+            elif not touching[k]:
+                begin_row(k, i, j, rotation, c, mass, x, inertia, eta, rows)
+            if not walled:
+                set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
+            else:
+                set_separation_of_any(
+                    B.SEPARATION // 4 + l, k, i, j, n_solid, x, points, normals, met, slot, batch
+                )
+            e = dashpot_row(k, eta)
+            write4(
+                batch,
+                B.RELATIVE_VELOCITY + 4 * l,
+                with_fourth(read4(v, 8 * i) - read4(v, 8 * j), eta[e, M.ETA_N]),
             )
-        e = dashpot_row(k, eta)
-        write4(
-            batch,
-            B.RELATIVE_VELOCITY + 4 * l,
-            with_fourth(read4(v, 8 * i) - read4(v, 8 * j), eta[e, M.ETA_N]),
-        )
-        copy4(batch, B.SPIN_I + 4 * l, w, 8 * i)
-        copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
-        if j >= n_solid:
-            batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
-            if walled is not None and j >= n_solid + len(points):
-                face_lanes[n_face] = l
-                n_face += 1
-        row_to_lane(short, l, k, rows, batch)
-        batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
-        if kind:
-            batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
-        if kind == M.HERTZ:  # a row of its own, since a loop reads all four of a group or none
-            batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
-    if walled is not None:
-        face_lanes[B.LANES] = n_face
-    whole = (m + 7) // 8 * 8
-    for l in range(m, whole):
-        for a in range(4):
-            batch[B.SEPARATION + 4 * l + a] = batch[B.RELATIVE_VELOCITY + 4 * l + a] = 0.0
-            batch[B.SPIN_I + 4 * l + a] = batch[B.SPIN_J + 4 * l + a] = 0.0
-            batch[B.SPRING + 4 * l + a] = batch[B.DASH + 4 * l + a] = 0.0
-        batch[B.ETA_S + l] = batch[B.WAS_TOUCHING + l] = 0.0
-        batch[B.K_N + l] = batch[B.K_S + l] = 1.0
-        if kind == M.HERTZ:
-            batch[B.OVERLAP_OLD + l] = 0.0
-        if table is not None:
-            batch[B.MU + l] = batch[B.MINDLIN + l] = 1.0
-        batch[B.SEPARATION + 4 * l] = B.FAR
-    return whole
+            copy4(batch, B.SPIN_I + 4 * l, w, 8 * i)
+            copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
+            if j >= n_solid:
+                batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
+                if walled and j >= n_solid + len(points):
+                    face_lanes[n_face] = l
+                    n_face += 1
+            row_to_lane(l, k, rows, batch)
+            batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
+            if springs:
+                batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
+            if hertz:  # a row of its own, since a loop reads all four of a group or none
+                batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
+        if walled:
+            face_lanes[B.LANES] = n_face
+        whole = (m + 7) // 8 * 8
+        for l in range(m, whole):
+            for a in range(4):
+                batch[B.SEPARATION + 4 * l + a] = batch[B.RELATIVE_VELOCITY + 4 * l + a] = 0.0
+                batch[B.SPIN_I + 4 * l + a] = batch[B.SPIN_J + 4 * l + a] = 0.0
+                batch[B.SPRING + 4 * l + a] = batch[B.DASH + 4 * l + a] = 0.0
+            batch[B.ETA_S + l] = batch[B.WAS_TOUCHING + l] = 0.0
+            batch[B.K_N + l] = batch[B.K_S + l] = 1.0
+            if hertz:
+                batch[B.OVERLAP_OLD + l] = 0.0
+            if table is not None:
+                batch[B.MU + l] = batch[B.MINDLIN + l] = 1.0
+            batch[B.SEPARATION + 4 * l] = B.FAR
+        return whole
+
+    return gather
 
 
 @inner(fastmath=FAST)
@@ -238,59 +253,53 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
     return tangential
 
 
-# Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
-_kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
-_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
+@cache
+def make_compute(plane: bool, mixed: bool) -> Any:
+    """Build compute for a plane or for space, and for one material or several."""
+    kinematics, tangential = _make_kinematics(plane), _make_tangential(plane, mixed)
 
+    @inner(fastmath=FAST)
+    def compute(choice: LawChoice, m: int, hdt: float, most: float, c: Any, batch: Any) -> None:
+        """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
 
-@inner(fastmath=FAST, forceinline=True)
-def compute(
-    flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, table: Any, c: Any, batch: Any
-) -> None:
-    """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
-
-    Three loops, not one: each reads what it needs from the batch. One long loop has more numbers alive than
-    there are registers, and waits for its own divisions and roots. `most` is the largest overlap over
-    diameter so far [-]. Spins of locked grains are zero.
-    """
-    least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
-    total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
-    if flat is not None:
-        _kinematics_plane(m, most, c, batch)
+        Three loops, not one: each reads what it needs from the batch. One long loop has more numbers alive
+        than there are registers, and waits for its own divisions and roots. `most` is the largest overlap
+        over diameter so far [-]. Spins of locked grains are zero.
+        """
+        least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
+        total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
+        kinematics(m, most, c, batch)
         _normal_force(least, m, hdt, c, batch)
-        if table is not None:
-            _tangential_plane_mixed(total, drop, whole, least, m, hdt, c, batch)
-        else:
-            _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
-    else:
-        _kinematics_space(m, most, c, batch)
-        _normal_force(least, m, hdt, c, batch)
-        if table is not None:
-            _tangential_space_mixed(total, drop, whole, least, m, hdt, c, batch)
-        else:
-            _tangential_space(total, drop, whole, least, m, hdt, c, batch)
+        tangential(total, drop, whole, least, m, hdt, c, batch)
+
+    return compute
 
 
-@inner(fastmath=FAST, forceinline=True)
-def scatter(
-    exact: int | None, short: int | None, m: int, selected: Any, i_of: Any, target: Any, touching: Any,
-    rows: Any, batch: Any, f: Any,
-) -> bool:  # fmt: skip
-    """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
+@cache
+def make_scatter(exact: bool, short: bool) -> Any:
+    """Build scatter for the timing of contacts and the length of rows (contact_rows.py)."""
+    lane_to_row = make_lane_to_row(short)
 
-    `selected` are the candidates on the lanes. Returns whether an overlap is larger than any before.
-    """
-    larger = False
-    for l in range(m):
-        k = selected[l]
-        i, j = i_of[k], target[k]
-        add4(f, 8 * i, batch, B.FORCE + 4 * l)
-        add4(f, 8 * i + 4, batch, B.TORQUE_I + 4 * l)
-        subtract4(f, 8 * j, batch, B.FORCE + 4 * l)
-        add4(f, 8 * j + 4, batch, B.TORQUE_J + 4 * l)
-        lane_to_row(short, l, k, rows, batch)
-        if exact is None:
-            touching[k] = batch[B.TORQUE_I + 4 * l + 3] > 0.0
-        larger = larger or batch[B.EXCESS + l] > 0.0
-    return larger
+    @inner(fastmath=FAST)
+    def scatter(
+        m: int, selected: Any, i_of: Any, target: Any, touching: Any, rows: Any, batch: Any, f: Any
+    ) -> bool:
+        """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
+
+        `selected` are the candidates on the lanes. Returns whether an overlap is larger than any before.
+        """
+        larger = False
+        for l in range(m):
+            k = selected[l]
+            i, j = i_of[k], target[k]
+            add4(f, 8 * i, batch, B.FORCE + 4 * l)
+            add4(f, 8 * i + 4, batch, B.TORQUE_I + 4 * l)
+            subtract4(f, 8 * j, batch, B.FORCE + 4 * l)
+            add4(f, 8 * j + 4, batch, B.TORQUE_J + 4 * l)
+            lane_to_row(l, k, rows, batch)
+            if not exact:
+                touching[k] = batch[B.TORQUE_I + 4 * l + 3] > 0.0
+            larger = larger or batch[B.EXCESS + l] > 0.0
+        return larger
+
+    return scatter

@@ -6,14 +6,16 @@ touch are skipped: when the list is pruned never shows in the bits of a run.
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any
 
+from ryusa.compiled.borrow import borrow
+from ryusa.compiled.piece import call, lend, taken
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays, Workspace
+from ryusa.engine.cpu.arrays import CandidateArrays, PairArrays, StepArrays, Workspace
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.cutoff import mark_approaching, set_relative_velocity, set_separation
 from ryusa.engine.cpu.faces import distance_to
-from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.vec4 import copy4, fill4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
@@ -23,86 +25,87 @@ _SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must fi
 
 @kernel(nogil=True)
 def prune_blocks(
-    first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, ahead: float,
-    plane_case: int, walled: int | None, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
-    candidates: CandidateArrays, spare: CandidateArrays, work: Workspace, wanted: Any,
+    piece: Any, first: int, last: int, reach_on: float, ahead: float, plane_case: int, work: Workspace,
+    held: StepArrays, wanted: Any,
 ) -> None:  # fmt: skip
     """Prune the lists of blocks first..last-1; `wanted` gets the room that each needs (see `prune`)."""
+    lent, lent_work = lend(held), lend(work)
     for b in range(first, last):
-        wanted[b] = prune(
-            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, walled, c, grains,
-            walls, pairs, candidates, spare, work,
-        )[0]  # fmt: skip
+        wanted[b] = call(piece, (b, reach_on, ahead, plane_case, lent_work, lent))[0]
 
 
-@inner(forceinline=False)
-def prune(
-    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int,
-    walled: int | None, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
-    candidates: CandidateArrays, spare: CandidateArrays, work: Workspace,
-) -> tuple[int, int]:  # fmt: skip
-    """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
+@cache
+def make_prune(walled: bool) -> Any:
+    """Build the piece that prunes the list of a block: prune(b, reach_on, ahead, plane_case, work, held)."""
 
-    They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`; or
-    did within the last two steps, and have an account to close: a contact that ends within a step is closed
-    in the next. `spare` has room for the pairs in touch of any block. Returns how much room is wanted where
-    there was too little (the list then holds the pairs in touch
-    alone), 0 where there was enough, -1 where a pair in touch is beyond reach, which should not be; and how
-    many are in touch.
-    """
-    # Without an owner no references are counted in the loop over pairs; else that can take 90 % of the time.
-    c, grains, walls, pairs, work = borrow(c), borrow(grains), borrow(walls), borrow(pairs), borrow(work)
-    candidates, spare = borrow(candidates), borrow(spare)
-    first, n_touching = candidates.first[b], _save_touching(b, candidates, spare)
-    room = candidates.first[b + 1] - first
-    i_of, pair, touching = candidates.i, candidates.index, candidates.touching
-    x, v, v_pruned, start, partners = grains.x, grains.v, grains.v_pruned, pairs.start, pairs.partners
-    points, normals = walls.points, walls.normals
-    separation, velocity, inside, owner = work.separation, work.velocity, work.inside, work.selected
-    for g in range(lo, hi):
-        copy4(v_pruned, 4 * g, v, 8 * g)
-    new, i, full = 0, lo, False
-    for begin in range(start[lo], start[hi], B.LANES):
-        m = min(B.LANES, start[hi] - begin)
-        for l in range(m):
-            while begin + l >= start[i + 1]:
-                i += 1
-            owner[l] = i
-            if walled is not None and partners[begin + l] >= n_solid + len(points):
-                seconds = max(ahead, 2.0 * c[P.DT])
-                f = partners[begin + l] - n_solid - len(points)
-                distance = distance_to(
-                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.poses,
-                    walls.faces.rows, walls.faces.centre,
-                )  # fmt: skip
-                set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
-                continue
-            set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
-            set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
-        mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
-        full = full or new + m > room
-        for l in range(m):  # no branch: which pairs are near is not predictable
-            if not full:
-                i_of[first + new], pair[first + new] = owner[l], begin + l
-            new += int(inside[l] > 0.0)
-    if full:
-        _restore_touching(b, n_touching, candidates, spare)
-        return new + _SLACK, n_touching
-    candidates.count[b] = new
-    _link_partners(b, lo, hi, n, pairs, candidates)
-    if walled is not None:
-        list_faces(b, n_solid + len(points), candidates)
-    for k in range(first, first + new):
-        touching[k] = 0
-    k = first
-    for t in range(n_touching):
-        while k < first + new and pair[k] < spare.index[t]:
-            k += 1
-        if k == first + new or pair[k] != spare.index[t]:
-            return -1, n_touching
-        touching[k] = spare.touching[t]
-        copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
-    return 0, n_touching
+    @kernel()
+    def prune(
+        b: int, reach_on: float, ahead: float, plane_case: int, work: Any, held: Any
+    ) -> tuple[int, int]:
+        """List anew the pairs of block b that come nearer than `reach_on` [m] beyond touch.
+
+        They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`;
+        or did within the last two steps, and have an account to close: a contact that ends within a step is
+        closed in the next. `spare` has room for the pairs in touch of any block. Returns how much room is
+        wanted where there was too little (the list then holds the pairs in touch alone), 0 where there was
+        enough, -1 where a pair in touch is beyond reach, which should not be; and how many are in touch.
+        """
+        held, work = taken(held), taken(work)
+        c, grains, walls, pairs = held.c, held.grains, held.walls, held.pairs
+        candidates, spare, n, n_solid = held.candidates, held.spare, held.n, held.n_solid
+        lo, hi = held.block_start[b], held.block_start[b + 1]
+        first, n_touching = candidates.first[b], _save_touching(b, candidates, spare)
+        room = candidates.first[b + 1] - first
+        i_of, pair, touching = candidates.i, candidates.index, candidates.touching
+        x, v, v_pruned, start, partners = grains.x, grains.v, grains.v_pruned, pairs.start, pairs.partners
+        points, normals = walls.points, walls.normals
+        separation, velocity, inside, owner = work.separation, work.velocity, work.inside, work.selected
+        for g in range(lo, hi):
+            copy4(v_pruned, 4 * g, v, 8 * g)
+        new, i, full = 0, lo, False
+        for begin in range(start[lo], start[hi], B.LANES):
+            m = min(B.LANES, start[hi] - begin)
+            for l in range(m):
+                while begin + l >= start[i + 1]:
+                    i += 1
+                owner[l] = i
+                if walled and partners[begin + l] >= n_solid + len(points):
+                    seconds = max(ahead, 2.0 * c[P.DT])
+                    f = partners[begin + l] - n_solid - len(points)
+                    distance = distance_to(
+                        f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.poses,
+                        walls.faces.rows, walls.faces.centre,
+                    )  # fmt: skip
+                    set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
+                    continue
+                set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
+                set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
+            mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
+            full = full or new + m > room
+            for l in range(m):  # no branch: which pairs are near is not predictable
+                if not full:
+                    i_of[first + new], pair[first + new] = owner[l], begin + l
+                new += int(inside[l] > 0.0)
+        if full:
+            _restore_touching(b, n_touching, candidates, spare)
+            return new + _SLACK, n_touching
+        candidates.count[b] = new
+        _link_partners(b, lo, hi, n, pairs, candidates)
+        if walled:
+            list_faces(b, n_solid + len(points), candidates)
+        for k in range(first, first + new):
+            touching[k] = 0
+        k = first
+        for t in range(n_touching):
+            while k < first + new and pair[k] < spare.index[t]:
+                k += 1
+            if k == first + new or pair[k] != spare.index[t]:
+                return -1, n_touching
+            touching[k] = spare.touching[t]
+            copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
+        return 0, n_touching
+
+    return prune
 
 
 @inner(forceinline=False)

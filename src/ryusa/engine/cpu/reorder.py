@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.compiled.borrow import borrow
 from ryusa.engine.cpu.arrays import GrainArrays
-from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.vec4 import copy4
 from ryusa.engine.shared.kernel import kernel
 from ryusa.engine.shared.layout import aligned

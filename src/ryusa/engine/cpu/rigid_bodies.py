@@ -6,23 +6,28 @@ its members are taken in the order of ids: sums do not depend on the number of t
 # ruff: noqa: E741  (l is a lane)
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ryusa.compiled.function import compiled
+from ryusa.compiled.piece import taken
 from ryusa.engine.cpu import fluid_layout as W
-from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
-from ryusa.engine.cpu.bodies_in_water import forces_of_water_on_bodies, share_impulse
-from ryusa.engine.cpu.body_lanes import BodyLanes
-from ryusa.engine.cpu.fluid_work import add_fluid, begin_fluid_work, book_fluid_work, end_fluid_work
-from ryusa.engine.cpu.simd.borrow import borrow
+from ryusa.engine.cpu.bodies_in_water import make_forces_on_bodies, share_impulse
+from ryusa.engine.cpu.fluid_work import (
+    begin_fluid_work,
+    end_fluid_work,
+    make_add_fluid,
+    make_book_fluid_work,
+)
 from ryusa.engine.cpu.simd.vec4 import component, vec4_of
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.kernel import FAST
 from ryusa.engine.shared.layout import aligned
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
-from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.engine.shared.variant import MotionKind
 from ryusa.laws.grain_step import kinetic_energy, potential_energy, translation_step, unwrapped
 from ryusa.laws.rigid_body import rotate, rotor_step, spin
 from ryusa.model import Scene
@@ -122,113 +127,127 @@ def body_state(arrays: BodyArrays) -> BodyState:
     )  # fmt: skip
 
 
-@inner(fastmath=FAST)
-def move_bodies(
-    variant: KernelVariant, water: int | None, column: int | None, choice: LawChoice, begin: int, end: int,
-    begins: bool, last: bool, c: Any, grains: GrainArrays, pairs: PairArrays, bodies: BodyArrays,
-    lanes: BodyLanes, batch: Any, account: Any, stats: Any,
-) -> None:  # fmt: skip
-    """Move bodies begin..end-1, in `BodyArrays.order`, and their members, by one step.
+@cache
+def make_move_bodies(kind: MotionKind) -> Any:
+    """Build the piece that moves rigid bodies: move_bodies(begin, end, begins, last, b, work, held)."""
+    water, column = bool(kind.water), bool(kind.column)
+    forces_on_bodies: Any = make_forces_on_bodies(column, kind.laws) if water else None
+    add_fluid = make_add_fluid(column, bool(kind.film), kind.laws.torque != 0)
+    book_fluid_work = make_book_fluid_work(column, bool(kind.film), kind.laws.torque != 0)
 
-    Energy is that of the scheme: 1/2 L(n-1/2) w(n+1/2) at the orientation of step n changes by the work of
-    torques over the velocity intervals, as 1/2 m v(n-1/2) v(n+1/2) does by that of forces. A member takes
-    its displacement over the step as velocity, and the mean of the spins at both ends as spin (design/0022).
-    """
-    # One function: sums over members and the motion of members share all that lies between them
-    grains, pairs, bodies = borrow(grains), borrow(pairs), borrow(bodies)
-    x, v, w, f, image = grains.x, grains.v, grains.w, pairs.f, grains.image
-    dt, l_x, l_y, v_pruned = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], grains.v_pruned
-    g = (c[P.G_X], c[P.G_Y], c[P.G_Z])
-    speed_2 = spin_2 = velocity_change_2 = 0.0
-    torque, half = choice.torque != 0, 0.0 if begins else 0.5 * dt
-    if water is not None:
-        begin_fluid_work(batch)
-    for k in range(begin, end):
-        b, l = bodies.order[k], (k - begin) % W.LANES
-        if water is not None:  # noqa: SIM102 (the outer test alone is taken out by the compiler)
-            if l == 0:
-                forces_of_water_on_bodies(
-                    column, choice, k, min(k + W.LANES, end), c, grains.fluid, bodies, lanes, batch
+    @compiled(fastmath=FAST)
+    def move_bodies(begin: int, end: int, begins: bool, last: bool, b_: int, work: Any, held: Any) -> None:
+        """Move bodies begin..end-1, in `BodyArrays.order`, and their members, by one step.
+
+        Energy is that of the scheme: 1/2 L(n-1/2) w(n+1/2) at the orientation of step n changes by the work
+        of torques over the velocity intervals, as 1/2 m v(n-1/2) v(n+1/2) does by that of forces. A member
+        takes its displacement over the step as velocity, and the mean of the spins at both ends as spin
+        (design/0022).
+        """
+        held, work = taken(held), taken(work)
+        c, grains, pairs, bodies, lanes, batch = (
+            held.c, held.grains, held.pairs, held.bodies, work.bodies, work.water,
+        )  # fmt: skip
+        account, stats = held.accounts.terms[b_], held.accounts.stats[b_]
+        # One function: sums over members and the motion of members share all that lies between them
+        x, v, w, f, image = grains.x, grains.v, grains.w, pairs.f, grains.image
+        dt, l_x, l_y, v_pruned = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], grains.v_pruned
+        g = (c[P.G_X], c[P.G_Y], c[P.G_Z])
+        speed_2 = spin_2 = velocity_change_2 = 0.0
+        half = 0.0 if begins else 0.5 * dt
+        if water:
+            begin_fluid_work(batch)
+        for k in range(begin, end):
+            b, l = bodies.order[k], (k - begin) % W.LANES
+            if water and l == 0:
+                forces_on_bodies(k, min(k + W.LANES, end), c, grains.fluid, bodies, lanes, batch)
+            q_w, q_x, q_y, q_z = bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3]
+            f_x = f_y = f_z = t_x = t_y = t_z = 0.0
+            for s in range(bodies.start[b], bodies.start[b + 1]):
+                i = bodies.place[s]
+                a_x, a_y, a_z = rotate(
+                    bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2], q_w, q_x, q_y, q_z
                 )
-        q_w, q_x, q_y, q_z = bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3]
-        f_x = f_y = f_z = t_x = t_y = t_z = 0.0
-        for s in range(bodies.start[b], bodies.start[b + 1]):
-            i = bodies.place[s]
-            a_x, a_y, a_z = rotate(bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2], q_w, q_x, q_y, q_z)
-            p_x, p_y, p_z = f[i, 0], f[i, 1], f[i, 2]
-            f_x, f_y, f_z = f_x + p_x, f_y + p_y, f_z + p_z
-            t_x += f[i, 4] + (a_y * p_z - a_z * p_y)
-            t_y += f[i, 5] + (a_z * p_x - a_x * p_z)
-            t_z += f[i, 6] + (a_x * p_y - a_y * p_x)
-            for a in range(8):
-                f[i, a] = 0.0
-        m, weight = bodies.m[b], bodies.m_weight[b]
-        r_x = r_y = r_z = 0.0  # drag
-        if water is not None:
-            push, turn, drag = add_fluid(
-                variant, column, torque, l, l, vec4_of(f_x, f_y, f_z, 0.0), vec4_of(t_x, t_y, t_z, 0.0),
-                lanes.film, batch,
-            )  # fmt: skip
-            f_x, f_y, f_z = component(push, 0), component(push, 1), component(push, 2)
-            t_x, t_y, t_z = component(turn, 0), component(turn, 1), component(turn, 2)
-            r_x, r_y, r_z = component(drag, 0), component(drag, 1), component(drag, 2)
-            m += bodies.m_added[b] if column is None else batch[W.ADDED + l]
-        per_m = 1.0 / m
-        over_1, over_2, over_3 = bodies.over[b, 0], bodies.over[b, 1], bodies.over[b, 2]
-        u_x, u_y, u_z = bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2]
-        x_b, v_x = translation_step(bodies.x[b, 0], u_x, f_x, r_x, weight * g[0], per_m, dt)
-        y_b, v_y = translation_step(bodies.x[b, 1], u_y, f_y, r_y, weight * g[1], per_m, dt)
-        z_b, v_z = translation_step(bodies.x[b, 2], u_z, f_z, r_z, weight * g[2], per_m, dt)
-        b_x, b_y, b_z = bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2]
-        m_x, m_y, m_z = b_x + dt * t_x, b_y + dt * t_y, b_z + dt * t_z
-        w_x, w_y, w_z = spin(q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3)
-        if water is not None:
-            w_0, w_1, w_2 = lanes.w[l, 0], lanes.w[l, 1], lanes.w[l, 2]
-            book_fluid_work(
-                variant, column, torque, l, l, half, dt, vec4_of(u_x, u_y, u_z, 0.0),
-                vec4_of(v_x, v_y, v_z, 0.0), vec4_of(w_0, w_1, w_2, 0.0), vec4_of(w_x, w_y, w_z, 0.0),
-                lanes.impulse, lanes.film, batch,
-            )  # fmt: skip
-            if column is not None:
-                share_impulse(l, b, bodies, lanes, grains.fluid, grains.impulse)
-        if last:
-            stats[S.KINETIC] += kinetic_energy(m, u_x, u_y, u_z, v_x, v_y, v_z)
-            stats[S.SPIN] += kinetic_energy(1.0, b_x, b_y, b_z, w_x, w_y, w_z)
-            stats[S.POTENTIAL] += potential_energy(
-                weight, g[0], g[1], g[2], unwrapped(bodies.x[b, 0], bodies.image[b, 0], l_x),
-                unwrapped(bodies.x[b, 1], bodies.image[b, 1], l_y), bodies.x[b, 2],
-            )  # fmt: skip
-        p_w, p_x, p_y, p_z, l_1, l_2, l_3 = rotor_step(
-            q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3, dt
-        )
-        s_x, s_y, s_z = rotate(over_1 * l_1, over_2 * l_2, over_3 * l_3, p_w, p_x, p_y, p_z)
-        s_x, s_y, s_z = 0.5 * (w_x + s_x), 0.5 * (w_y + s_y), 0.5 * (w_z + s_z)
-        bodies.x[b, 0], bodies.x[b, 1], bodies.x[b, 2] = x_b, y_b, z_b
-        bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2] = v_x, v_y, v_z
-        bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3] = p_w, p_x, p_y, p_z
-        bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2] = m_x, m_y, m_z
-        per_dt = 1.0 / dt
-        for s in range(bodies.start[b], bodies.start[b + 1]):
-            i = bodies.place[s]
-            arm_1, arm_2, arm_3 = bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2]
-            a_x, a_y, a_z = rotate(arm_1, arm_2, arm_3, q_w, q_x, q_y, q_z)
-            c_x, c_y, c_z = rotate(arm_1, arm_2, arm_3, p_w, p_x, p_y, p_z)
-            x[i, 0] = unwrapped(x_b + c_x, bodies.image[b, 0] - image[i, 0], l_x)
-            x[i, 1] = unwrapped(y_b + c_y, bodies.image[b, 1] - image[i, 1], l_y)
-            x[i, 2] = z_b + c_z
-            e_x, e_y, e_z = v_x + (c_x - a_x) * per_dt, v_y + (c_y - a_y) * per_dt, v_z + (c_z - a_z) * per_dt
-            v[i, 0], v[i, 1], v[i, 2] = e_x, e_y, e_z
-            w[i, 0], w[i, 1], w[i, 2] = s_x, s_y, s_z
-            speed_2 = max(speed_2, e_x * e_x + e_y * e_y + e_z * e_z)
-            d_x, d_y, d_z = e_x - v_pruned[i, 0], e_y - v_pruned[i, 1], e_z - v_pruned[i, 2]
-            velocity_change_2 = max(velocity_change_2, d_x * d_x + d_y * d_y + d_z * d_z)
-        fast, fast_spin = v_x * v_x + v_y * v_y + v_z * v_z, s_x * s_x + s_y * s_y + s_z * s_z
-        spin_2 = max(spin_2, fast_spin)
-        if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
-            stats[S.FAULT], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, -1
-            stats[S.FAULT_GRAIN] = grains.ids[bodies.place[bodies.start[b]]]
-    if water is not None:
-        end_fluid_work(batch, account, stats)
-    stats[S.SPEED_MOVED] = max(stats[S.SPEED_MOVED], math.sqrt(speed_2))
-    stats[S.SPIN_MAX] = max(stats[S.SPIN_MAX], math.sqrt(spin_2))
-    stats[S.VELOCITY_CHANGE_MOVED] = max(stats[S.VELOCITY_CHANGE_MOVED], math.sqrt(velocity_change_2))
+                p_x, p_y, p_z = f[i, 0], f[i, 1], f[i, 2]
+                f_x, f_y, f_z = f_x + p_x, f_y + p_y, f_z + p_z
+                t_x += f[i, 4] + (a_y * p_z - a_z * p_y)
+                t_y += f[i, 5] + (a_z * p_x - a_x * p_z)
+                t_z += f[i, 6] + (a_x * p_y - a_y * p_x)
+                for a in range(8):
+                    f[i, a] = 0.0
+            m, weight = bodies.m[b], bodies.m_weight[b]
+            r_x = r_y = r_z = 0.0  # drag
+            if water:
+                push, turn, drag = add_fluid(
+                    l, l, vec4_of(f_x, f_y, f_z, 0.0), vec4_of(t_x, t_y, t_z, 0.0),
+                    lanes.film, batch,
+                )  # fmt: skip
+                f_x, f_y, f_z = component(push, 0), component(push, 1), component(push, 2)
+                t_x, t_y, t_z = component(turn, 0), component(turn, 1), component(turn, 2)
+                r_x, r_y, r_z = component(drag, 0), component(drag, 1), component(drag, 2)
+                m += bodies.m_added[b] if not column else batch[W.ADDED + l]
+            per_m = 1.0 / m
+            over_1, over_2, over_3 = bodies.over[b, 0], bodies.over[b, 1], bodies.over[b, 2]
+            u_x, u_y, u_z = bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2]
+            x_b, v_x = translation_step(bodies.x[b, 0], u_x, f_x, r_x, weight * g[0], per_m, dt)
+            y_b, v_y = translation_step(bodies.x[b, 1], u_y, f_y, r_y, weight * g[1], per_m, dt)
+            z_b, v_z = translation_step(bodies.x[b, 2], u_z, f_z, r_z, weight * g[2], per_m, dt)
+            b_x, b_y, b_z = bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2]
+            m_x, m_y, m_z = b_x + dt * t_x, b_y + dt * t_y, b_z + dt * t_z
+            w_x, w_y, w_z = spin(q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3)
+            if water:
+                w_0, w_1, w_2 = lanes.w[l, 0], lanes.w[l, 1], lanes.w[l, 2]
+                book_fluid_work(
+                    l, l, half, dt, vec4_of(u_x, u_y, u_z, 0.0),
+                    vec4_of(v_x, v_y, v_z, 0.0), vec4_of(w_0, w_1, w_2, 0.0), vec4_of(w_x, w_y, w_z, 0.0),
+                    lanes.impulse, lanes.film, batch,
+                )  # fmt: skip
+                if column:
+                    share_impulse(l, b, bodies, lanes, grains.fluid, grains.impulse)
+            if last:
+                stats[S.KINETIC] += kinetic_energy(m, u_x, u_y, u_z, v_x, v_y, v_z)
+                stats[S.SPIN] += kinetic_energy(1.0, b_x, b_y, b_z, w_x, w_y, w_z)
+                stats[S.POTENTIAL] += potential_energy(
+                    weight, g[0], g[1], g[2], unwrapped(bodies.x[b, 0], bodies.image[b, 0], l_x),
+                    unwrapped(bodies.x[b, 1], bodies.image[b, 1], l_y), bodies.x[b, 2],
+                )  # fmt: skip
+            p_w, p_x, p_y, p_z, l_1, l_2, l_3 = rotor_step(
+                q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3, dt
+            )
+            s_x, s_y, s_z = rotate(over_1 * l_1, over_2 * l_2, over_3 * l_3, p_w, p_x, p_y, p_z)
+            s_x, s_y, s_z = 0.5 * (w_x + s_x), 0.5 * (w_y + s_y), 0.5 * (w_z + s_z)
+            bodies.x[b, 0], bodies.x[b, 1], bodies.x[b, 2] = x_b, y_b, z_b
+            bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2] = v_x, v_y, v_z
+            bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3] = p_w, p_x, p_y, p_z
+            bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2] = m_x, m_y, m_z
+            per_dt = 1.0 / dt
+            for s in range(bodies.start[b], bodies.start[b + 1]):
+                i = bodies.place[s]
+                arm_1, arm_2, arm_3 = bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2]
+                a_x, a_y, a_z = rotate(arm_1, arm_2, arm_3, q_w, q_x, q_y, q_z)
+                c_x, c_y, c_z = rotate(arm_1, arm_2, arm_3, p_w, p_x, p_y, p_z)
+                x[i, 0] = unwrapped(x_b + c_x, bodies.image[b, 0] - image[i, 0], l_x)
+                x[i, 1] = unwrapped(y_b + c_y, bodies.image[b, 1] - image[i, 1], l_y)
+                x[i, 2] = z_b + c_z
+                e_x, e_y, e_z = (
+                    v_x + (c_x - a_x) * per_dt,
+                    v_y + (c_y - a_y) * per_dt,
+                    v_z + (c_z - a_z) * per_dt,
+                )
+                v[i, 0], v[i, 1], v[i, 2] = e_x, e_y, e_z
+                w[i, 0], w[i, 1], w[i, 2] = s_x, s_y, s_z
+                speed_2 = max(speed_2, e_x * e_x + e_y * e_y + e_z * e_z)
+                d_x, d_y, d_z = e_x - v_pruned[i, 0], e_y - v_pruned[i, 1], e_z - v_pruned[i, 2]
+                velocity_change_2 = max(velocity_change_2, d_x * d_x + d_y * d_y + d_z * d_z)
+            fast, fast_spin = v_x * v_x + v_y * v_y + v_z * v_z, s_x * s_x + s_y * s_y + s_z * s_z
+            spin_2 = max(spin_2, fast_spin)
+            if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
+                stats[S.FAULT], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, -1
+                stats[S.FAULT_GRAIN] = grains.ids[bodies.place[bodies.start[b]]]
+        if water:
+            end_fluid_work(batch, account, stats)
+        stats[S.SPEED_MOVED] = max(stats[S.SPEED_MOVED], math.sqrt(speed_2))
+        stats[S.SPIN_MAX] = max(stats[S.SPIN_MAX], math.sqrt(spin_2))
+        stats[S.VELOCITY_CHANGE_MOVED] = max(stats[S.VELOCITY_CHANGE_MOVED], math.sqrt(velocity_change_2))
+
+    return move_bodies

@@ -7,7 +7,7 @@ import numpy as np
 
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared.contact_instants import ENDING, PARTED
-from ryusa.engine.shared.dashpots import springs_of
+from ryusa.engine.shared.dashpots import make_springs_of
 from ryusa.engine.shared.layout import Layout
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
@@ -72,10 +72,9 @@ def memory_of(
         mine, law = np.empty((len(contacts.i[some]), variant.springs)), numbers
         if layout.scene.materials is not None:
             law = parameters_of(scene)
-        springs_of(
-            contacts.i[some], contacts.j[some], variant.rotation, variant.kind, law, layout.m, x,
-            layout.inertia, mine,
-        )  # fmt: skip
+        make_springs_of(variant.kind)(
+            contacts.i[some], contacts.j[some], variant.rotation, law, layout.m, x, layout.inertia, mine
+        )
         eta[some] = mine
     if choice.rebound:
         eta[:, M.ETA_N] = contacts.eta_n

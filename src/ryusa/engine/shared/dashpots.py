@@ -1,5 +1,6 @@
 """Dashpots and stiffnesses of one pair: from the damping ratio, and from the immersed rebound at touch."""
 
+from functools import cache
 from typing import Any
 
 from ryusa.engine.shared import memory_rows as M
@@ -77,13 +78,42 @@ def set_springs(
         out[at, M.ETA_N], out[at, M.ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
 
 
-@kernel()
-def springs_of(
-    i: Any, j: Any, rotation: int, kind: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
-) -> None:
-    """Fill `out`, (n, KernelVariant.springs), with those of pairs i, j."""
-    for k in range(len(i)):
-        set_springs(k, i[k], j[k], rotation, kind, c, m, x, inertia, out)
+@cache
+def make_set_springs(kind: int) -> Any:
+    """Build set_springs(at, i, j, rotation, c, m, x, inertia, out) of one kind alone."""
+    of_maps, of_spheres = kind == M.OF_MAPS, kind == M.HERTZ
+
+    @inner(fastmath=FAST)
+    def set_springs_of_kind(
+        at: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+    ) -> None:
+        """Fill row `at` of `out` with the dashpots and stiffnesses of pair i, j."""
+        if of_maps:
+            out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_N], out[at, M.K_S] = springs_of_maps(
+                i, j, rotation, c, m, x, inertia
+            )
+        elif of_spheres:
+            out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(
+                i, j, rotation, c, m, x, inertia
+            )
+        else:
+            out[at, M.ETA_N], out[at, M.ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
+
+    return set_springs_of_kind
+
+
+@cache
+def make_springs_of(kind: int) -> Any:
+    """Build springs_of(i, j, rotation, c, m, x, inertia, out) of one kind."""
+    set_springs_of_kind = make_set_springs(kind)
+
+    @kernel()
+    def springs_of(i: Any, j: Any, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any) -> None:
+        """Fill `out`, (n, KernelVariant.springs), with those of pairs i, j."""
+        for k in range(len(i)):
+            set_springs_of_kind(k, i[k], j[k], rotation, c, m, x, inertia, out)
+
+    return springs_of
 
 
 @inner(fastmath=FAST)

@@ -1,4 +1,4 @@
-"""What a kernel is compiled for, and the laws it picks while it runs."""
+"""What kernels are compiled for, and the laws they pick while they run."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ _, EXACT = numbers(__name__, ContactTiming.AT_STEPS, ContactTiming.EXACT)
 
 
 class KernelVariant(NamedTuple):
-    """What a kernel is compiled for; each is kept on disk once built."""
+    """What a scene needs of its kernels."""
 
     plane_case: int
     rotation: int
@@ -51,8 +51,51 @@ class KernelVariant(NamedTuple):
         return M.WIDTH_ROLLING if self.rolling else M.WIDTH
 
 
+class ForcesKind(NamedTuple):
+    """What the forces of contacts are compiled for; what is 0 is not compiled."""
+
+    plane_case: int
+    rotation: int
+    rolling: int
+    events: int
+    film: int
+    exact: int
+    walls: int
+    hertz: int
+    mixed: int
+    adhesive: int
+    rebound: int  # restitution depends on the water at touch
+
+
+class WaterLaws(NamedTuple):
+    """Laws of the water by number (laws.families); each is compiled, the others of its family are not."""
+
+    profile: int
+    above: int
+    drag: int
+    torque: int
+    buoyancy: int
+    hindrance: int
+    lift: int
+    magnus: int
+    drag_of_form: int
+
+
+class MotionKind(NamedTuple):
+    """What the motion of grains is compiled for; what is 0 is not compiled."""
+
+    plane_case: int
+    rotation: int
+    counted: int  # contacts of each grain are counted
+    film: int
+    bodies: int
+    water: int
+    column: int
+    laws: WaterLaws
+
+
 class LawChoice(NamedTuple):
-    """Laws a kernel picks while it runs (laws.families); always the same, so that a branch is free."""
+    """Laws of a scene by number (laws.families), as kernels pick them while they run."""
 
     slip: int
     cap: int
@@ -121,3 +164,20 @@ def choice_of(scene: Scene) -> LawChoice:
         drag_of_form=int(water.drag_of_form),
         adhesion=int(law.adhesion),
     )
+
+
+def forces_kind(variant: KernelVariant, choice: LawChoice) -> ForcesKind:
+    """Forces of contacts that this variant needs."""
+    own = {name: getattr(variant, name) for name in ForcesKind._fields if name != "rebound"}
+    return ForcesKind(**own, rebound=int(variant.water and choice.rebound != 0))
+
+
+def motion_kind(variant: KernelVariant, choice: LawChoice) -> MotionKind:
+    """Motion of grains that this variant needs."""
+    laws = WaterLaws(*(getattr(choice, name) if variant.water else 0 for name in WaterLaws._fields))
+    if not variant.rotation:
+        laws = laws._replace(torque=0)
+    return MotionKind(
+        variant.plane_case, variant.rotation, int(variant.rolling or variant.events), variant.film,
+        variant.bodies, variant.water, variant.column, laws,
+    )  # fmt: skip

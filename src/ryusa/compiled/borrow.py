@@ -7,14 +7,15 @@ from numba import types
 from numba.extending import intrinsic
 
 
-def _borrowed(builder: Any, kind: Any, value: Any) -> Any:
+def borrowed(builder: Any, kind: Any, value: Any) -> Any:
+    """A value without the owners of its arrays, in the code that is being written."""
     if isinstance(kind, types.Array):
         owner = value.type.elements[0]
         return builder.insert_value(value, ir.Constant(owner, None), 0)
     if isinstance(kind, types.BaseTuple):
         parts: Any = kind
         for k, part in enumerate(parts):
-            value = builder.insert_value(value, _borrowed(builder, part, builder.extract_value(value, k)), k)
+            value = builder.insert_value(value, borrowed(builder, part, builder.extract_value(value, k)), k)
     return value
 
 
@@ -26,7 +27,7 @@ def _borrow(typingctx: Any, value: Any) -> Any:
     """
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _borrowed(builder, signature.args[0], args[0])
+        return borrowed(builder, signature.args[0], args[0])
 
     return value(value), codegen
 
