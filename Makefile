@@ -17,7 +17,10 @@ JOBS   ?= 2
 # Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
 SPREAD := -n $(JOBS) --dist worksteal
 
+# uv installs five times as fast as pip; where it cannot reach what pip is set up for, pip takes over.
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
+UV     := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt
+install = @$(UV) $(1) || { echo "uv could not install; pip tries"; $(PIP) $(1); }
 
 # An empty file says what the environment holds; it is older than its recipe when something must be done again.
 HAS_PYTHON := $(VENV)/.has-python
@@ -42,21 +45,22 @@ $(HAS_PYTHON):
 	    echo "On Debian and Ubuntu: sudo apt install python3-venv"; exit 1; }
 	@echo "creating $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
+	@$(PIP) uv
 	@touch $@
 
 $(HAS_RYUSA): pyproject.toml constraints.txt | $(HAS_PYTHON)
 	@echo "installing ryusa and what it needs into $(VENV)"
-	@$(PIP) --editable .
+	$(call install,--editable .)
 	@touch $@
 
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
-	@$(PIP) --editable '.[test]'
+	$(call install,--editable '.[test]')
 	@touch $@
 
 $(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
 	@echo "installing what the documentation site needs into $(VENV)"
-	@$(PIP) --editable '.[docs]'
+	$(call install,--editable '.[docs]')
 	@touch $@
 
 # ---------------------------------------------------------------------------------------------------------- demo
@@ -110,7 +114,7 @@ validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies ou
 	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
 
 fuzz: $(HAS_TESTS) ## 20,000 case files, 200 through the command line, then a quarter of an hour guided by coverage
-	@$(PIP) --editable '.[fuzz]'
+	$(call install,--editable '.[fuzz]')
 	$(BIN)/python tests/faults/fuzz.py cases 20000 1
 	$(BIN)/python tests/faults/fuzz.py cli 200 1
 	$(BIN)/python tests/faults/fuzz.py guided 900
