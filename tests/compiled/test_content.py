@@ -128,6 +128,12 @@ def test_options_and_what_a_closure_holds_count():
     assert content_of(closing(1.0)) != content_of(closing(2.0))
 
 
+def test_a_function_of_no_module_has_a_content():
+    function = made("def f(x):\n    return x\n")
+    function.__module__ = None
+    assert content_of(function)
+
+
 def test_what_has_no_content_is_refused_not_guessed():
     with pytest.raises(UnknownContentError, match="has no content"):
         content_of(made("def f(x):\n    return x + K\n", K=object()))

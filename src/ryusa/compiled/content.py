@@ -129,7 +129,8 @@ class _Digest:
     def function(self, function: Any) -> None:
         """Put a function: by name where a version covers it, else all that it says."""
         self.put("function", _name(function))
-        if function.__module__.partition(".")[0] in _VERSIONED:
+        module = function.__module__ or ""  # what Numba writes itself is of no module
+        if module.partition(".")[0] in _VERSIONED:
             self.code(function.__code__, {})
             for cell in function.__closure__ or ():
                 self.put("cell", str(cell.cell_contents))
@@ -137,7 +138,7 @@ class _Digest:
         if id(function) in self.open:
             return
         self.open.add(id(function))
-        self.extension(function.__module__)
+        self.extension(module)
         self.code(function.__code__, function.__globals__)
         self.values(
             "defaults", [*(function.__defaults__ or ()), *sorted((function.__kwdefaults__ or {}).items())]
