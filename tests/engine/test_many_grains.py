@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numba import typeof
 from tests.engine.conftest import D, bits, contact_law, pile, run
 from tests.engine.reference import accelerations, touching_pairs
 
@@ -31,6 +32,17 @@ KINDS = {
         "timing": ContactTiming.EXACT, "plane_case": True, "rolling": EPSD, "tension": True,
     },
 }  # fmt: skip
+
+
+def test_a_scene_that_names_whose_contacts_it_records_needs_no_other_kernel():
+    fixed, first = pile(n=60, timing=ContactTiming.EXACT)
+    types = []
+    for tracked in (np.zeros(0, bool), np.arange(fixed.n_grain) < 3):
+        tracked.setflags(write=False)
+        engine = CpuEngine()
+        engine.load(replace(fixed, events=EventRule.TRACKED, tracked=tracked), first)
+        types.append([typeof(array) for array in engine._grains])
+    assert types[0] == types[1]
 
 
 @pytest.mark.parametrize("kind", KINDS)
