@@ -1,6 +1,7 @@
 # ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
 #   make demo     install, run the saltation case, measure it, draw it, write its page
-#   make test     the same, the paper's claims and the validation in short, then every check and test
+#   make test     the same, the paper's claims and the validation in short, the checks, the quick tests: ten minutes
+#   make test-all the same with all tests: an hour
 # `make` alone lists the rest.
 
 PYTHON ?= python3
@@ -16,6 +17,8 @@ JOBS   ?= 2
 
 # Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
 SPREAD := -n $(JOBS) --dist worksteal
+LONGEST := --durations=30 --durations-min=1
+PYTEST := $(BIN)/python -m pytest -q $(SPREAD) $(LONGEST)
 
 # uv installs five times as fast as pip; where it cannot reach what pip is set up for, pip takes over.
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
@@ -29,7 +32,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden constraints clean
+.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -79,11 +82,21 @@ demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it, writ
 
 # ---------------------------------------------------------------------------------------------------------- test
 
-test: $(HAS_TESTS) ## the demo, the paper's claims and the validation in short, then every check and test
-	@$(MAKE) --no-print-directory -j $(JOBS) demo lint types walls # one process each
+test: before-tests ## the demo, the paper's claims and the validation in short, the checks and the quick tests: ten minutes
+	@$(MAKE) --no-print-directory quick
+
+test-all: before-tests ## the same with all tests but `make slow`: an hour; before a release
+	@$(MAKE) --no-print-directory unit
+
+# The type checker is one process and takes longer than the demo: the paper's runs begin beside it.
+before-tests: $(HAS_TESTS)
+	@$(MAKE) --no-print-directory -j $(JOBS) pages lint types walls
+
+# In turn, so that each finds the kernels that the one before it compiled.
+pages: $(HAS_TESTS)
+	@$(MAKE) --no-print-directory demo
 	@$(MAKE) --no-print-directory paper-quick
 	@$(MAKE) --no-print-directory validate-quick
-	@$(MAKE) --no-print-directory unit
 
 check: lint types walls unit ## every check and test, without the demo
 
@@ -97,8 +110,11 @@ types: $(HAS_TESTS) ## pyright, strict on src
 walls: $(HAS_TESTS) ## import-linter: which room may see which
 	$(BIN)/lint-imports
 
-unit: $(HAS_TESTS) ## pytest: doctests in src, tests in tests
-	$(BIN)/python -m pytest -q $(SPREAD)
+quick: $(HAS_TESTS) ## the tests of `make test`: those not marked `full`, with a dozen kernels
+	$(PYTEST) --quick
+
+unit: $(HAS_TESTS) ## the tests of `make test-all`: doctests in src, tests in tests
+	$(PYTEST)
 
 paper: $(HAS_RYUSA) ## every claim of the paper, judged over four seeds: runs/paper/ledger.html
 	$(BIN)/ryusa paper --jobs $(JOBS)
@@ -123,10 +139,10 @@ soak: $(HAS_TESTS) ## half an hour of a two-way run, whose memory must stay flat
 	$(BIN)/python tests/faults/soak.py build/soak 30
 
 faults: $(HAS_TESTS) ## the fault campaign: 200 kills, full disks, a thousand damaged and foreign folders
-	$(BIN)/python -m pytest -q $(SPREAD) tests/faults -m "slow or not slow"
+	$(PYTEST) tests/faults -m "slow or not slow"
 
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
-	$(BIN)/python -m pytest -q $(SPREAD) -m slow
+	$(PYTEST) -m slow
 
 golden: $(HAS_TESTS) ## run the recipes in tests/golden, keep the numbers that moved and say which did
 	$(BIN)/python tests/golden/goldens.py

@@ -1,5 +1,6 @@
-"""Settings of all tests."""
+"""Settings of all tests, and the quick level: `--quick` leaves out what is marked `full`."""
 
+import pytest
 from hypothesis import settings
 
 # With new examples on every run one run of the suite fails and the next passes; `make fuzz` looks further.
@@ -7,3 +8,28 @@ from hypothesis import settings
 settings.register_profile("ryusa", deadline=None, derandomize=True)
 settings.register_profile("random", deadline=None)  # pytest --hypothesis-profile=random
 settings.load_profile("ryusa")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--quick", action="store_true", help="without tests marked `full`, and only the kernels of make test"
+    )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is marked `full`."""
+    if not config.getoption("quick"):
+        return
+    left_out = [item for item in items if item.get_closest_marker("full")]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if not item.get_closest_marker("full")]
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Let no test of the quick level ask for a kernel of another one (tests/kernel_variants.py)."""
+    if session.config.getoption("quick"):
+        from tests.kernel_variants import confined
+
+        from ryusa.engine.cpu import engine
+
+        engine.make_run = confined(engine.make_run)

@@ -23,6 +23,7 @@ def averages():
         sys.path.remove(str(FOLDER))
 
 
+@pytest.mark.full
 def test_equal_flows_rarely_differ_however_their_seeds_scatter_and_a_shift_of_many_errors_does(averages):
     rng = np.random.default_rng(1)
     wrong = 0

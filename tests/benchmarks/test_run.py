@@ -22,6 +22,7 @@ def quick(tmp_path: Path):
     return run
 
 
+@pytest.mark.full
 def test_the_benchmark_writes_figures_with_their_machine_and_does_nothing_twice(
     quick, tmp_path: Path
 ) -> None:

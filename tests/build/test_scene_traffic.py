@@ -185,6 +185,7 @@ def test_the_step_is_that_of_the_stiffest_pair_that_meets() -> None:
     assert floor.dt == plain.dt  # a whole grain on springs in series is slower than two halves
 
 
+@pytest.mark.full
 def test_poured_grains_fall_leave_and_come_in_again(tmp_path: Path) -> None:
     feed = hose(rate=80.0, normal=(0, 0, -1), centre=(0, 0, 0.1), velocity=(0, 0, -0.5))
     out = build.exit_plane("below", (0, 0, 0), (0, 0, -1), to="hose")

@@ -1,20 +1,15 @@
-"""[shapes] of the case file: clumps of a mesh or of ratios of axes, kept by the run, and bad ones."""
+"""[shapes] of the case file: clumps of a mesh or of ratios of axes, and bad ones."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
-import ryusa
 from ryusa.build import build
-from ryusa.casefile import forms
 from ryusa.casefile.explain import explain
 from ryusa.casefile.read import read, read_text
-from ryusa.casefile.resolved import resolved
 from ryusa.errors import CaseError
-from ryusa.results import schema
 from ryusa.running.case_files import files_beside
 
 PLAIN = """
@@ -81,25 +76,6 @@ def test_clumps_of_a_mesh_and_of_ratios_are_built_and_their_likeness_is_stated(t
     assert "b/a = 0.7" in made.origin
     assert "by calliper" in made.origin
     assert files_beside(case) == {"crushed.stl": tmp_path / "crushed.stl"}
-
-
-def test_a_run_keeps_its_spheres_whatever_becomes_of_the_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    case = read(with_mesh(tmp_path, cube()))
-    run = ryusa.run(case, tmp_path / "run", progress=False)
-    kept = json.loads((run.folder / schema.CASE_JSON).read_text())["shapes"]["crushed"]["made_of"]
-    assert len(kept) == 9
-    trimesh.creation.icosphere().export(run.folder / "crushed.stl")
-    monkeypatch.setattr(forms, "fill_mesh", None)  # nothing is filled again
-    again = read(run.folder / schema.CASE_TOML)
-    assert resolved(again)["shapes"]["crushed"]["made_of"] == kept
-    made, first = build(again).scene.bodies, run.scene.bodies
-    assert made is not None
-    assert first is not None
-    assert np.array_equal(made.arm, first.arm)
-    with pytest.raises(TypeError):  # other keys make another body
-        read(run.folder / schema.CASE_TOML, {"shapes.crushed.spheres": "4"})
 
 
 def test_ratios_need_no_file() -> None:

@@ -51,31 +51,6 @@ def faults(given, **more):
     return str(found.value)
 
 
-@pytest.mark.parametrize("kind", ["box", "packing", "fill", "flume"])
-def test_builders_leave_room_for_clumps_however_they_are_turned(kind):
-    boxes = {
-        "box": "", "packing": "", "fill": 'low = ["0 cm", "0 cm", "0 cm"]\nhigh = ["2 cm", "2 cm", "2 cm"]',
-        "flume": 'length = "3 cm"\nwidth = "2 cm"\nlayers = 3',
-    }  # fmt: skip
-    text = PLAIN
-    if kind != "box":
-        text = text.replace('kind = "box"', f'kind = "{kind}"\n{boxes[kind]}').replace(
-            'floor = "plane"\n', ""
-        )
-    if kind in {"fill", "flume"}:
-        for key in ("columns = 6\n", "rows = 5\n", "layers = 6\n"):
-            text = text.replace(key, "")
-    made = build(case_of('"rod"', text))
-    bodies = made.scene.bodies
-    assert bodies is not None
-    assert bodies.n * 3 == made.scene.n_grain
-    assert CpuEngine().refuses(made.scene) == ()
-    engine = CpuEngine()
-    engine.load(made.scene, made.state)
-    engine.advance(1).raise_if_any()
-    assert engine.tally().n_contact == 0  # none overlaps another, the bed or a wall
-
-
 def test_shares_are_by_number_and_the_rest_are_spheres():
     made = build(case_of("{ rod = 0.5, tetrahedron = 0.3 }"))
     bodies = made.scene.bodies

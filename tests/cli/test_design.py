@@ -27,6 +27,7 @@ def test_the_paper_grain_gets_its_band_and_its_contact_times():
     assert "k_n = 6993 to 6.993e+05 N/m" in result.output
 
 
+@pytest.mark.full
 def test_charts_and_tables_are_written(tmp_path):
     result = CliRunner().invoke(app, [*PAPER, "--water", "-o", str(tmp_path / "design")])
     assert result.exit_code == 0, result.output

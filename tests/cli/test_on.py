@@ -160,6 +160,7 @@ class Noting(Elsewhere):
         assert wait
 
 
+@pytest.mark.full
 def test_a_study_is_the_same_at_another_place(place, monkeypatch):
     (place / "mine" / "study.py").write_text(STUDY + CALCULATION)
     assert call("study", "-q").exit_code == 0

@@ -51,6 +51,7 @@ def test_quick_and_full_exclude_each_other():
     assert call("--quick", "--full").exit_code == 2
 
 
+@pytest.mark.full
 def test_the_list_gives_time_and_disk_space(tmp_path):
     result = call("--full", "--list", "-j", 2, "-o", tmp_path)
     assert result.exit_code == 0, result.output

@@ -40,6 +40,7 @@ def test_a_check_is_computed_written_and_a_second_time_opened(tmp_path):
     assert {one["verdict"] for one in kept["findings"]} == {"within"}
 
 
+@pytest.mark.full
 def test_a_missed_comparison_has_its_own_exit_code_and_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(water_alone, "U_STAR", 0.2)  # of the reference alone, once the columns are kept
     call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1)
@@ -71,6 +72,7 @@ def test_seeds_set_the_runs_and_need_not_be_those_of_the_table():
     assert call("--list", "--quick", "--full").exit_code == 2
 
 
+@pytest.mark.full
 def test_changed_verdicts_are_listed_against_an_earlier_ledger(tmp_path, monkeypatch):
     kept = tmp_path / "kept.json"
     first = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1, "--json", kept)

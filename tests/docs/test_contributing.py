@@ -14,6 +14,8 @@ from ryusa.casefile.read import read
 from ryusa.laws.families import Drag
 from ryusa.results import Results
 
+pytestmark = pytest.mark.full
+
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 STEPS = re.findall(r"```\w+ title=(\S+)\n(.*?)```", PAGE, re.DOTALL)  # file, text

@@ -30,6 +30,7 @@ def stepped(path: Path):
     return built.scene
 
 
+@pytest.mark.full
 def test_the_gate_case_runs_and_its_gate_can_be_removed(blocks, tmp_path):
     kind, text = blocks[0]
     assert kind == "toml"
@@ -68,6 +69,7 @@ def test_the_hopper_runs_and_its_walls_are_measured(blocks, tmp_path):
     assert measure.walls(found).names == ("left", "right", "plate")
 
 
+@pytest.mark.full
 def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
     (text,) = [text for _, text in blocks if 'title = "Gravel bed under water"' in text]
     path = tmp_path / "gravel.toml"
@@ -88,6 +90,7 @@ def test_the_feed_of_the_page_is_that_of_the_packaged_case(blocks):
     assert {key: packaged[key] for key in written} == written
 
 
+@pytest.mark.full
 def test_the_flume_with_a_weir_runs(blocks, tmp_path):
     (text,) = [text for kind, text in blocks if kind == "toml" and "Flume with a weir" in text]
     path = tmp_path / "flume.toml"
@@ -118,6 +121,7 @@ def test_the_drum_of_arrays_is_built_and_its_grains_can_be_clumps(blocks):
     assert clumps.traffic.feeds[0].count == 4 * 600
 
 
+@pytest.mark.full
 def test_grains_are_fed_and_trapped_in_a_column_of_water(blocks, tmp_path):
     (text,) = [text for _, text in blocks if "Bed load fed" in text]
     path = tmp_path / "trap.toml"

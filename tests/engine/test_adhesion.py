@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, M, bits, contact_law, elastic_law, pile, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.build.clumps import with_clumps
@@ -37,6 +38,7 @@ LAWS = {
     "elastic, DMT, may pull": elastic_law(0.05, damping_law=DampingLaw.TSUJI),
     "elastic, contact area": elastic_law(0.05, youngs_modulus=1.0e7),
 }
+ELASTIC = tuple(name for name in LAWS if name.startswith("elastic"))  # by `make test`
 AMOUNTS = {"constant": PULL, "DMT": WORK, "contact area": 2.0e5}
 
 
@@ -55,7 +57,7 @@ def on_a_plane(law, per_contact=400.0, height=0.5 * D, **more):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", full_but(ELASTIC, LAWS))
 def test_a_slow_impact_sticks_and_a_faster_one_parts(name):
     law = sticky(name)
     speed = sticking_speed_of(law, M, R)
@@ -68,7 +70,7 @@ def test_a_slow_impact_sticks_and_a_faster_one_parts(name):
             assert engine.state().v[0, 2] > 0.0
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", full_but(ELASTIC, LAWS))
 def test_at_rest_the_overlap_is_that_of_the_attraction_as_a_load(name):
     law = sticky(name)
     pull, slope = attraction_of(law, R)
@@ -84,7 +86,7 @@ def test_at_rest_the_overlap_is_that_of_the_attraction_as_a_load(name):
     assert tally.spring_n == pytest.approx(held - (pull + 0.5 * slope * rest) * rest, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", full_but(ELASTIC, LAWS))
 def test_a_grain_hangs_from_a_ceiling_as_long_as_its_pull_off_force_is_above_its_weight(name):
     law = sticky(name)
     hold = pull_off_of(law, R)
@@ -106,6 +108,7 @@ def test_a_grain_hangs_from_a_ceiling_as_long_as_its_pull_off_force_is_above_its
         assert (len(engine.state().contacts) == 1) == (load < 1.0)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("cap", [Cap.SPRING, Cap.TOTAL])
 def test_friction_is_mu_times_the_push_of_load_and_attraction(cap):
     mu, c = 0.3, 2.0 * M
@@ -126,6 +129,7 @@ def test_friction_is_mu_times_the_push_of_load_and_attraction(cap):
         assert slowed * M == pytest.approx(c + mu * (weight + PULL), rel=1e-3)
 
 
+@pytest.mark.full
 def test_an_attraction_of_nothing_changes_no_bit():
     made, state = pile(120, contact=contact_law(mu=0.4))
     none = run((made, state), 400)
@@ -140,7 +144,9 @@ def sticky_pile(name, stir):
     return pile(contact=sticky(name), stir=stir)
 
 
-@pytest.mark.parametrize("name", ["linear, DMT", "elastic, constant", "elastic, contact area"])
+@pytest.mark.parametrize(
+    "name", full_but(ELASTIC, ["linear, DMT", "elastic, constant", "elastic, contact area"])
+)
 def test_any_number_of_threads_and_a_resumed_snapshot_give_the_same_bits(name):
     made = sticky_pile(name, 0.2)
     whole, many, first = run(made, 4000), run(made, 4000, threads=3), run(made, 2777)
@@ -152,6 +158,7 @@ def test_any_number_of_threads_and_a_resumed_snapshot_give_the_same_bits(name):
     assert many.tally() == whole.tally() == resumed.tally()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", ["linear, DMT", "elastic, constant", "elastic, contact area"])
 def test_the_account_of_grains_that_stick_closes_as_without_adhesion(name):
     made, state = sticky_pile(name, 0.05)
@@ -165,6 +172,7 @@ def test_the_account_of_grains_that_stick_closes_as_without_adhesion(name):
     assert stuck.residual < max(2.0 * loose.residual, 1e-4)
 
 
+@pytest.mark.full
 def test_momentum_and_angular_momentum_of_a_free_pair_are_kept():
     law = replace(contact_law(mu=0.4, zeta_n=0.3), adhesion=Adhesion.CONSTANT, adhesion_amount=100.0 * PULL)
     made, first = scene(
@@ -182,6 +190,7 @@ def test_momentum_and_angular_momentum_of_a_free_pair_are_kept():
         assert after == pytest.approx(before, rel=0.0, abs=1e-11 * size)
 
 
+@pytest.mark.full
 def test_each_pair_of_materials_has_its_own_attraction():
     law = elastic_law(0.05)
     law = replace(law, adhesion=Adhesion.DMT, adhesion_amount=WORK)
@@ -203,6 +212,7 @@ def test_each_pair_of_materials_has_its_own_attraction():
     assert engine.tally().residual < 1e-9
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "name",
     # elastic spheres on walls and elastic spheres that stick have faster tests of their own
@@ -228,6 +238,7 @@ def test_a_wall_lifts_a_grain_that_hangs_on_it_and_its_work_is_booked(name):
     assert tally.residual < 1e-3
 
 
+@pytest.mark.full
 def test_clumps_stick_by_each_of_their_spheres():
     law = replace(contact_law(zeta_n=0.12), adhesion=Adhesion.CONSTANT, adhesion_amount=PULL)
     form = shape("dumbbell")
@@ -252,6 +263,7 @@ def test_clumps_stick_by_each_of_their_spheres():
         assert len(engine.state().contacts) == (2 if load < 2.0 else 0)
 
 
+@pytest.mark.full
 def test_a_plane_scene_with_records_agrees_with_space():
     law = replace(contact_law(mu=0.4), adhesion=Adhesion.CONSTANT, adhesion_amount=5.0 * PULL)
     ends = []

@@ -46,6 +46,7 @@ def held(tally):
     return tally.kinetic + tally.spin + tally.potential + tally.spring_n + tally.spring_s
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("law", [{}, {"contact": elastic_law(r=0.5 * D, friction=0.4, restitution=0.5)}])
 def test_a_clump_of_one_sphere_does_as_the_sphere(law):
     how = {
@@ -62,6 +63,7 @@ def test_a_clump_of_one_sphere_does_as_the_sphere(law):
     assert held(clump.tally()) == pytest.approx(held(alone.tally()), rel=1e-10)
 
 
+@pytest.mark.full
 def test_a_clump_in_free_flight_keeps_its_energy_and_angular_momentum():
     """Thrown about its middle axis, so that it turns over: energy swings by the second order of the step."""
     made = clumps("blade", x=[[0, 0, 0]], v=[[0.1, 0, 0]], omega=[[0.1, 200.0, 0.2]], gravity=0.0, dt=1e-5)
@@ -85,6 +87,7 @@ def test_a_clump_in_free_flight_keeps_its_energy_and_angular_momentum():
     assert np.allclose(state.omega, omega, rtol=3e-3, atol=0.3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("angle", [0.3, 0.8, 1.2])
 def test_an_elastic_impact_off_the_centre_is_that_of_a_rigid_body(angle):
     """A dumbbell whose lower end hits a smooth floor: J = 2 u/(1/m + (a x n)^2/I) (any text on mechanics)."""
@@ -106,6 +109,7 @@ def test_an_elastic_impact_off_the_centre_is_that_of_a_rigid_body(angle):
     assert after.v[0, :2] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("form", ["dumbbell", "tetrahedron", "blade"])
 def test_bouncing_clumps_without_damping_keep_their_energy(form):
     """Two of them and a floor; what the energy is off by falls with the square of the step."""
@@ -130,6 +134,7 @@ def test_bouncing_clumps_without_damping_keep_their_energy(form):
     assert off[1] < off[0] / 4.0
 
 
+@pytest.mark.full
 def test_two_clumps_that_collide_keep_their_momenta():
     """With friction and damping: linear and angular momentum of both together, to round-off."""
     made = clumps(
@@ -150,6 +155,7 @@ def test_two_clumps_that_collide_keep_their_momenta():
     assert np.allclose(after[3:], before[3:], atol=1e-12 * bodies.m.sum() * D)
 
 
+@pytest.mark.full
 def test_a_tetrahedron_stands_on_a_slope_on_which_a_sphere_rolls_down():
     up, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [shape("tetrahedron").x[0]])  # one corner up
     q = [up.as_quat(scalar_first=True)]
@@ -166,6 +172,7 @@ def test_a_tetrahedron_stands_on_a_slope_on_which_a_sphere_rolls_down():
     assert sphere.state().v[0, 0] == pytest.approx(5.0 / 7.0 * 9.80665 * math.sin(how["slope"]) * t, rel=0.02)
 
 
+@pytest.mark.full
 def test_a_pile_gives_the_same_bits_for_any_threads_and_after_a_resume():
     """Members of one clump lie in several blocks, and cross the period."""
     made = block()

@@ -43,6 +43,7 @@ G, NU = 9.80665, 1.0e-6
 DEEP = {"planes": [("deep", (0.0, 0.0, -100.0), (0.0, 0.0, 1.0))]}  # the world reaches so far
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("law", list(DragOfForm))
 @pytest.mark.parametrize("form", ["dumbbell", "blade"])
 def test_a_clump_settles_as_the_law_of_its_form_implies(law, form):
@@ -65,6 +66,7 @@ def test_a_clump_settles_as_the_law_of_its_form_implies(law, form):
     assert engine.tally().residual < 1e-9
 
 
+@pytest.mark.full
 def test_the_spin_of_a_clump_decays_by_the_torque_on_its_sphere():
     """About a principal axis, slowly enough for Stokes: d(omega)/dt = -pi mu d^3 omega/I."""
     water = replace(STILL, nu=1e-4)
@@ -77,6 +79,7 @@ def test_the_spin_of_a_clump_decays_by_the_torque_on_its_sphere():
     assert left < 0.9
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("profile", [Profile.STILL, Profile.UNIFORM])
 def test_a_clump_of_one_sphere_in_water_does_as_the_sphere(profile):
     water = replace(STILL, profile=profile, u_uniform=0.3, drag_of_form=DragOfForm.SPHERE)
@@ -129,6 +132,7 @@ def momentum(scene, state):
     return float(scene.m[alone] @ state.v[alone, 0] + scene.bodies.m @ state.bodies.v[:, 0])
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("buoyancy", list(Buoyancy))
 def test_clumps_and_a_column_gain_together_what_weight_and_bed_give(buoyancy):
     """Until the first touches the floor, whose friction would count too."""
@@ -146,6 +150,7 @@ def test_clumps_and_a_column_gain_together_what_weight_and_bed_give(buoyancy):
     assert engine.tally().residual < 1e-6
 
 
+@pytest.mark.full
 def test_clumps_in_a_column_give_the_same_bits_for_any_threads_and_after_a_resume():
     made, column = cloud()
 
@@ -179,6 +184,7 @@ def test_clumps_in_a_column_give_the_same_bits_for_any_threads_and_after_a_resum
     assert again.tally().residual < 1e-3
 
 
+@pytest.mark.full
 def test_a_clump_in_a_column_of_still_water_settles_as_one_sphere_of_its_drag():
     """Many cells and no neighbours: the column gives the terminal velocity of the isolated clump."""
     water = replace(STILL, profile=Profile.COLUMN, buoyancy=Buoyancy.WEIGHT)

@@ -46,6 +46,7 @@ def in_simulator(*words: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "file, part",
     [("test_engines.py", "frozen"), ("test_engines.py", "not frozen"), ("in_cuda_simulator.py", "test")],
@@ -55,6 +56,7 @@ def test_the_engine_does_in_the_simulator_what_every_engine_does(file: str, part
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
 
 
+@pytest.mark.full
 def test_the_program_for_a_card_fills_its_table_in_parts_and_does_no_row_twice(tmp_path: Path) -> None:
     program = (
         "benchmarks/card.py",
@@ -97,6 +99,7 @@ def entry(kernel: Kernel) -> str:
     return ptx
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("card")
 @pytest.mark.parametrize(
     "kind", [one if one in SHOWN else pytest.param(one, marks=pytest.mark.slow) for one in KINDS]
@@ -113,6 +116,7 @@ def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str)
     assert "atom.global.add.f64" not in ptx  # no sum may depend on which thread comes first
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("card")
 def test_every_other_kernel_becomes_ptx() -> None:
     from ryusa.engine.cuda import verlet_list

@@ -101,6 +101,7 @@ def test_a_law_given_by_its_damping_ratio_alone_is_as_exact():
     assert -found["closing_end"] == pytest.approx(0.7 * SPEED, rel=1e-11)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("e", [0.5, 0.9])
 @pytest.mark.parametrize("slip", [Slip.SPRING, Slip.TOTAL])
 @pytest.mark.parametrize("aslant", [0.1, 0.5, 1.0, 2.0, 5.0])
@@ -116,6 +117,7 @@ def test_at_eight_steps_an_oblique_impact_is_as_exact_as_at_fifty_that_begin_at_
     assert worst[ContactTiming.EXACT] < max(1.1 * worst[ContactTiming.AT_STEPS], 7.5e-3)
 
 
+@pytest.mark.full
 def test_the_immersed_rebound_is_exact_with_the_restitution_of_its_stokes_number():
     water = Water(profile=Profile.STILL, drag=Drag.NONE, rebound=Rebound.EXPONENTIAL, st_c=30.0)
     fixed, engine = impacts(0.9, "fixed", 8, water=water)
@@ -126,6 +128,7 @@ def test_the_immersed_rebound_is_exact_with_the_restitution_of_its_stokes_number
     assert -found["closing_end"] == pytest.approx(e * SPEED, rel=1e-9)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("plane", [False, True])
 @pytest.mark.parametrize("steps", [5, 8])
 def test_a_pile_comes_to_rest_as_quietly_as_with_many_steps(steps, plane):
@@ -139,6 +142,7 @@ def test_a_pile_comes_to_rest_as_quietly_as_with_many_steps(steps, plane):
     assert quiet[ContactTiming.EXACT] < max(10.0 * quiet[ContactTiming.AT_STEPS], 1e-6)
 
 
+@pytest.mark.full
 def test_resumed_after_any_step_a_run_gives_the_same_bits():
     """Rolling friction shares the inertia of a grain among its contacts: also where one has just ended."""
     made = heap(**EXACT | {"rolling": RollingLaw(Rolling.CONSTANT, Arm.REDUCED_RADIUS, 0.1), "stir": 0.5})
@@ -171,6 +175,7 @@ def test_a_column_of_grains_at_rest_carries_its_weight():
     assert sorted(state.contacts.f_n) == pytest.approx([weight * k for k in range(1, 6)], rel=1e-9)
 
 
+@pytest.mark.full
 def test_static_friction_holds_up_to_the_coefficient_and_not_beyond():
     """A sphere without rotation on a slope: at rest below the angle of friction, sliding above it."""
     for excess in (0.99, 1.01):
@@ -224,6 +229,7 @@ def orbit(miss, speed, law, m):
 SOFT = [(1e4, 0.3, 2e-4), (30.0, 0.3, 2e-3), (10.0, 0.5, 4e-3)]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("e", [0.7, 0.98])
 @pytest.mark.parametrize(("k_n", "speed", "allowed"), SOFT)
 def test_a_contact_that_turns_as_the_grains_pass_is_as_good_at_ten_steps_as_at_fifty(k_n, speed, allowed, e):

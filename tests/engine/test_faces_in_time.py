@@ -19,6 +19,8 @@ from ryusa.model import Scene, State
 from ryusa.model.servo import motion_with
 from ryusa.model.walls import N_IMPULSE, TOUCHED
 
+pytestmark = pytest.mark.full
+
 D = 2.0e-3
 LAW = {"timing": ContactTiming.AT_STEPS, "steps_per_contact": 20.0, "stiffness": 2.0e3}
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, bits, pile, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
@@ -71,7 +72,9 @@ def test_a_grain_rebounds_with_the_restitution_of_its_stokes_number(law, st, par
 
 
 @pytest.mark.parametrize("tension", [False, True])
-@pytest.mark.parametrize("rotation, wide", [(False, False), (True, False), (True, True)])
+@pytest.mark.parametrize(
+    "rotation, wide", full_but([(False, False), (True, False)], [(False, False), (True, False), (True, True)])
+)
 def test_the_rebound_is_the_same_however_contacts_part_and_grains_move(tension, rotation, wide):
     water = replace(STILL, rebound=Rebound.EXPONENTIAL)
     got, _ = rebound(40.0, "wall", water, tension=tension, rotation=rotation, wide=wide)
@@ -85,6 +88,7 @@ def test_a_step_of_fifty_to_a_contact_resolves_the_rebound():
         assert got == pytest.approx(LAWS[Rebound.EXPONENTIAL](st), rel=0.08)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("st", [20.0, 100.0])
 @pytest.mark.parametrize("partner", PARTNERS)
 def test_a_film_slows_the_approach_by_its_closed_form(st, partner):
@@ -106,6 +110,7 @@ def test_a_film_slows_the_approach_by_its_closed_form(st, partner):
     assert account.residual < 1e-3
 
 
+@pytest.mark.full
 def test_a_film_resists_separation_as_much_as_approach():
     reach = 0.2 * D
     water = replace(STILL, film_reach=reach)
@@ -125,6 +130,7 @@ BOTH = {
 }
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("kind", BOTH)
 def test_threads_calls_and_a_resume_do_not_change_a_bit(kind):
     more, water = BOTH[kind]
@@ -144,6 +150,7 @@ def test_threads_calls_and_a_resume_do_not_change_a_bit(kind):
     assert whole.tally().n_contact > 0
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("wide", [False, True])
 def test_films_between_free_grains_keep_their_momentum(wide):
     made = pile(n=400, plane_case=not wide, water=replace(STILL, film_reach=0.1 * D))

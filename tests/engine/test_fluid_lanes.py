@@ -97,6 +97,7 @@ def group(batch, place):
     return batch[place : place + 4 * N].reshape(N, 4)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("choice", CHOICES, ids=words)
 def test_lanes_hold_what_one_grain_in_a_column_feels(choice, grains):
     x, v, w, fluid, m, m_bare, c = grains

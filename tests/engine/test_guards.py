@@ -96,6 +96,7 @@ def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
     assert isinstance(flags.fault, ContactSlotsFull)
 
 
+@pytest.mark.full
 def test_no_contact_record_is_lost_however_small_the_buffer(monkeypatch):
     made = pile(n=200, plane_case=True)  # one block, whatever the buffer
     engine, _ = advance(made, 6000)

@@ -14,6 +14,8 @@ from ryusa.model import Term
 from ryusa.model.contact_law import contact_time_of, hertz_stiffness_of, largest_overlap_of
 from ryusa.model.scene import EventRule
 
+pytestmark = pytest.mark.full
+
 SPEED = 0.5  # [m/s]
 PARTNERS = {"fixed": (M, 0.25 * D), "free": (0.5 * M, 0.25 * D), "plane": (M, 0.5 * D)}
 

@@ -100,6 +100,7 @@ ASKEW = [[0.1, 0.03, -0.08], [-0.1, 0.0, 0.1]]
 NO_SPIN, SPINS = np.zeros((2, 3)), [[5.0, 40.0, -9.0], [-20.0, 30.0, 4.0]]
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("water", [None, STILL], ids=["dry", "added mass"])
 @pytest.mark.parametrize("e, steps, tension", [(0.9, 50.0, False), (0.3, 50.0, False), (0.7, 10.0, True)])
@@ -131,6 +132,7 @@ def test_a_rebound_at_50_steps_has_the_restitution_of_the_case(e):
     assert got == pytest.approx([e] * 8, abs=1e-2)
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
 @pytest.mark.parametrize("friction", [0.05, 0.3, 5.0])
@@ -168,6 +170,7 @@ def test_a_sliding_grain_ends_rolling_at_the_speed_of_the_closed_form(water, ine
     assert end.omega[0, 1] * 0.5 * D == pytest.approx(end.v[0, 0], rel=1e-4)
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("plane_case", [False, True])
 def test_a_grain_falls_through_water_at_its_terminal_velocity_and_as_on_the_cpu(plane_case):
@@ -191,6 +194,7 @@ def test_a_grain_falls_through_water_at_its_terminal_velocity_and_as_on_the_cpu(
     assert mine.omega == pytest.approx(theirs.omega, rel=1e-11)
 
 
+@pytest.mark.full
 @needs_lammps
 def test_a_column_of_water_acts_on_grains_and_takes_their_impulse_as_on_the_cpu():
     rng = np.random.default_rng(4)
@@ -211,6 +215,7 @@ def test_a_column_of_water_acts_on_grains_and_takes_their_impulse_as_on_the_cpu(
             assert mine == pytest.approx(theirs, rel=1e-10, abs=1e-12 * np.abs(theirs).max())
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("column", [False, True])
 def test_a_snapshot_goes_on_with_its_contacts_though_not_bit_for_bit(column):

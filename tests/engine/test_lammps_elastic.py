@@ -54,6 +54,7 @@ def ended(made):
     return math.ceil(first + 2.0 * STEPS)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("partner", PARTNERS)
 def test_a_head_on_collision_without_losses_is_that_of_the_cpu_to_round_off(partner):
     made = met(partner, AHEAD)
@@ -73,6 +74,7 @@ COST = {
 }  # fmt: skip
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("partner", PARTNERS)
 @pytest.mark.parametrize("e, damping_law", COST)
 def test_a_rebound_differs_from_that_of_the_cpu_by_the_constant_correction_alone(partner, e, damping_law):
@@ -152,6 +154,7 @@ def test_restitution_duration_and_overlap_at_50_steps_are_those_of_the_closed_fo
         assert np.mean(lasted) == pytest.approx(1.0, abs=0.04)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("partner", PARTNERS)
 @pytest.mark.parametrize("unloading", list(Unloading))
 def test_an_oblique_collision_of_grains_that_do_not_turn_is_that_of_the_cpu_to_round_off(partner, unloading):
@@ -163,6 +166,7 @@ def test_an_oblique_collision_of_grains_that_do_not_turn_is_that_of_the_cpu_to_r
             assert np.abs(mine.v - theirs.v).max() / 0.1 < most
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("partner", PARTNERS)
 @pytest.mark.parametrize("unloading", list(Unloading))
 def test_an_oblique_collision_differs_from_the_cpu_by_the_overlap_over_the_radius_alone(partner, unloading):
@@ -215,6 +219,7 @@ def test_a_snapshot_goes_on_with_its_contacts_though_not_bit_for_bit():
     assert mine.omega == pytest.approx(theirs.omega, rel=1e-9, abs=1e-11 * np.abs(theirs.omega).max())
 
 
+@pytest.mark.full
 def test_grains_of_several_sizes_without_losses_are_those_of_the_cpu_to_round_off():
     fixed, first = pebbles(rotation=False)
     lossless = replace(

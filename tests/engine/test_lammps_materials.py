@@ -49,6 +49,7 @@ def bouncing(law, e, **more):
     return replace(law, e_n=e, e_s=e, zeta_n=zeta_for_restitution(e, False), zeta_s=zeta_tension(e), **more)
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
 @pytest.mark.parametrize("of", [[0, 1], [1, 0]])
@@ -61,6 +62,7 @@ def test_a_head_on_collision_of_a_pair_is_that_of_the_cpu_to_round_off(partner, 
         assert mine.v == pytest.approx(theirs.v, rel=0.0, abs=1e-14)
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
 def test_an_oblique_collision_takes_friction_and_rolling_of_the_pair(partner):
@@ -77,6 +79,7 @@ def test_an_oblique_collision_takes_friction_and_rolling_of_the_pair(partner):
     assert np.abs(found[0] - found[1]).max() > 0.5
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
 @pytest.mark.parametrize("e", [1.0, 0.7])
@@ -149,6 +152,7 @@ def crowd(elastic=False, **more):
     )  # fmt: skip
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("elastic", [False, True])
 def test_a_crowd_of_several_materials_and_densities_keeps_the_paths_of_the_cpu(elastic):
@@ -164,6 +168,7 @@ def test_a_crowd_of_several_materials_and_densities_keeps_the_paths_of_the_cpu(e
     assert np.abs(stepped((alone, made[1]), 400)[1].v - theirs.v).max() > 1e-2  # and the pairs matter
 
 
+@pytest.mark.full
 @needs_lammps
 def test_the_energy_of_springs_is_that_of_the_pairs():
     made = crowd(elastic=True)
@@ -180,6 +185,7 @@ def test_the_energy_of_springs_is_that_of_the_pairs():
     assert mine.spring_n > 0.0 and mine.spring_n != before.spring_n
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("water", [None, STILL], ids=["dry", "added mass"])
 def test_grains_of_two_densities_collide_as_on_the_cpu(water):
@@ -194,6 +200,7 @@ def test_grains_of_two_densities_collide_as_on_the_cpu(water):
     assert mine.v == pytest.approx(theirs.v, rel=0.0, abs=1e-14)
 
 
+@pytest.mark.full
 @needs_lammps
 def test_grains_of_two_densities_fall_through_water_as_on_the_cpu():
     made = scene(
@@ -242,6 +249,7 @@ def many(n):
     )  # fmt: skip
 
 
+@pytest.mark.full
 @needs_lammps
 @pytest.mark.parametrize("n, types", [(3, 27), (14, 28), (28, 28)])
 def test_as_many_types_as_lammps_has_groups_for_are_carried(n, types):

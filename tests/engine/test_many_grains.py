@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numba import typeof
 from tests.engine.conftest import D, bits, contact_law, pile, run
 from tests.engine.reference import accelerations, touching_pairs
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.engine.cpu import engine as cpu_engine
@@ -31,9 +33,21 @@ KINDS = {
         "timing": ContactTiming.EXACT, "plane_case": True, "rolling": EPSD, "tension": True,
     },
 }  # fmt: skip
+SHOWN = ("3D, exact, records", "plane, exact, may pull, rolling friction")  # by `make test`
 
 
-@pytest.mark.parametrize("kind", KINDS)
+def test_a_scene_that_names_whose_contacts_it_records_needs_no_other_kernel():
+    fixed, first = pile(n=60, timing=ContactTiming.EXACT)
+    types = []
+    for tracked in (np.zeros(0, bool), np.arange(fixed.n_grain) < 3):
+        tracked.setflags(write=False)
+        engine = CpuEngine()
+        engine.load(replace(fixed, events=EventRule.TRACKED, tracked=tracked), first)
+        types.append([typeof(array) for array in engine._grains])
+    assert types[0] == types[1]
+
+
+@pytest.mark.parametrize("kind", full_but(SHOWN, KINDS))
 def test_any_number_of_threads_gives_the_same_bits(kind):
     made = pile(n=600, **KINDS[kind])
     outcome = []
@@ -44,7 +58,7 @@ def test_any_number_of_threads_gives_the_same_bits(kind):
     assert all(o == outcome[0] for o in outcome)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", full_but(SHOWN, KINDS))
 def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     made = pile(n=400, **KINDS[kind])
     whole = run(made, 1200)
@@ -65,6 +79,7 @@ def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
 
 
+@pytest.mark.full
 def test_blocks_that_move_early_give_the_bits_of_blocks_that_wait(monkeypatch):
     monkeypatch.setattr(cpu_engine, "blocks_of", lambda n, plane_case: 8)
     made = pile(n=600, plane_case=True)
@@ -86,6 +101,7 @@ def test_blocks_that_share_pairs_are_found_on_either_side():
         assert len(found[1]) == (span > 0)
 
 
+@pytest.mark.full
 def test_an_account_without_block_accounts_is_continued_from_its_sum():
     made = pile(n=400)
     state = run(made, 700).state()
@@ -97,6 +113,7 @@ def test_an_account_without_block_accounts_is_continued_from_its_sum():
     assert engine.tally().residual == pytest.approx(same.tally().residual, abs=1e-12)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("plane_case", [False, True])
 @pytest.mark.parametrize("slip", list(Slip))
 def test_forces_at_one_frozen_state_agree_with_a_plain_reference(plane_case, slip):
@@ -140,6 +157,7 @@ def gas(n=216, seed=2, e=1.0):
     )
 
 
+@pytest.mark.full
 def test_an_elastic_gas_keeps_its_energy_over_1e5_steps():
     # each touch gives or takes its share of a step: a gas walks by some 6e-5, and several must not go one way
     last = []
@@ -159,6 +177,7 @@ def test_an_elastic_gas_keeps_its_energy_over_1e5_steps():
     assert abs(np.mean(last)) < 1e-4
 
 
+@pytest.mark.full
 def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():
     fixed, first = gas(125)
     fixed = replace(fixed, plane_active=np.zeros(2, np.bool_))
@@ -171,6 +190,7 @@ def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():
     )
 
 
+@pytest.mark.full
 def test_of_three_mutual_contacts_only_the_one_that_ends_loses_its_history():
     # three touching grains; the third is pulled away: the memory of the two that stay goes on
     law = contact_law(mu=0.5, zeta_n=0.05, zeta_s=0.05)
@@ -208,6 +228,7 @@ def test_of_three_mutual_contacts_only_the_one_that_ends_loses_its_history():
     assert np.all(fresh < 2.0 * law.k_s * 0.05 * fixed.dt)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("per_contact", [10.0, 20.0, 50.0])
 def test_the_account_closes_at_coarse_steps_with_the_step_term(per_contact):
     made = pile(n=300, plane_case=True, stir=0.1, steps_per_contact=per_contact)
@@ -240,7 +261,7 @@ def test_the_residual_does_not_depend_on_where_the_origin_is():
     assert residuals[0] < 1e-3
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", full_but(SHOWN, KINDS))
 def test_the_energy_account_closes(kind):
     made = pile(
         n=300, **KINDS[kind], steps_per_contact=50.0
@@ -259,6 +280,7 @@ def test_the_energy_account_closes(kind):
         assert account.terms[Term.DRAG] != 0.0
 
 
+@pytest.mark.full
 def test_a_bed_at_rest_comes_to_rest():
     # a pile with friction and damping on a level bed: motion dies out and the account says where it went
     rolling = RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.05)
@@ -270,7 +292,10 @@ def test_a_bed_at_rest_comes_to_rest():
     assert engine.tally().residual < 1e-3
 
 
-@pytest.mark.parametrize(("timing", "steps", "left"), [("at steps", 50.0, 1e-3), ("exact", 10.0, 1e-4)])
+@pytest.mark.parametrize(
+    ("timing", "steps", "left"),
+    full_but([("exact", 10.0, 1e-4)], [("at steps", 50.0, 1e-3), ("exact", 10.0, 1e-4)]),
+)
 def test_removing_a_gate_ends_its_contacts_and_accounts_for_their_springs(timing, steps, left):
     law = contact_law(mu=0.5, zeta_n=0.2, zeta_s=0.2, timing=ContactTiming.of(timing))
     squeeze = 1e-3 * D
@@ -298,6 +323,7 @@ def test_removing_a_gate_ends_its_contacts_and_accounts_for_their_springs(timing
     assert math.isnan(record["closing_end"])
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("model", [Rolling.PRINTED, Rolling.LIMITED, Rolling.CONSTANT, Rolling.EPSD])
 def test_rotation_may_be_locked_and_freed_during_a_run_with_any_rolling_friction(model):
     fixed, first = pile(n=60, rolling=RollingLaw(model, Arm.REDUCED_RADIUS, 0.1), stir=0.1)
@@ -311,6 +337,7 @@ def test_rotation_may_be_locked_and_freed_during_a_run_with_any_rolling_friction
     assert engine.tally().residual < 1e-3
 
 
+@pytest.mark.full
 def test_locking_rotation_during_a_run_removes_the_spin_from_the_account():
     fixed, first = scene([[0.0, 0.0, 0.0]], D, omega=[[0.0, 50.0, 0.0]], gravity=0.0)
     engine = run((fixed, first), 10)

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from tests.engine.conftest import D, M, bits, elastic_law, pile, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
@@ -56,6 +57,7 @@ def head_on(partner, plane_case=False, **keys):
     return scene(first, D, v=v, gravity=0.0, plane_case=plane_case, rolling=SLIDER, **other, **keys)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("plane_case", [True, False])
 @pytest.mark.parametrize("partner", ["fixed", "plane", "free"])
 @pytest.mark.parametrize("timing", TIMINGS)
@@ -70,6 +72,7 @@ def test_a_rebound_has_the_restitution_of_the_pair(timing, partner, plane_case):
         assert -alone["closing_end"] / alone["closing_begin"] == pytest.approx(0.7, abs=3e-3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("partner", ["fixed", "free", "plane"])
 def test_two_elastic_spheres_touch_for_the_time_of_their_effective_modulus(partner):
     (e_a, nu_a), (e_b, nu_b) = (1.0e8, 0.3), (4.0e8, 0.1)
@@ -93,6 +96,7 @@ def test_two_elastic_spheres_touch_for_the_time_of_their_effective_modulus(partn
     assert k_s == pytest.approx(8.0 / sum(shear) * math.sqrt(r * overlap), rel=1e-9)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("e", [0.4, 0.8])
 def test_elastic_spheres_of_two_materials_have_the_restitution_of_the_pair(e):
     one = elastic_law(SPEED, restitution=0.6)
@@ -111,6 +115,7 @@ def test_stiffness_of_a_pair_gives_its_contact_time(partner):
     assert event["t_end"] - event["t_begin"] == pytest.approx(collision_time(m, 3.0e4), rel=1e-9)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("force", ["linear", "linear at steps", "Hertz"])
 def test_a_block_slides_to_rest_by_the_friction_of_the_pair(force):
     v, mu, n = 0.3, 0.2, 4000
@@ -173,7 +178,7 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", full_but(["exact"], KINDS))
 def test_the_account_closes_with_several_materials(kind):
     made = mixed_pile(**KINDS[kind])
     engine = run(made, 3000)
@@ -189,7 +194,7 @@ def test_the_account_closes_with_several_materials(kind):
     assert found.tangential == pytest.approx(tally.spring_s, rel=1e-9)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", full_but(["exact"], KINDS))
 def test_threads_and_a_snapshot_leave_the_bits(kind):
     made = mixed_pile(**KINDS[kind])
     whole = run(made, 600).state()
@@ -201,6 +206,7 @@ def test_threads_and_a_snapshot_leave_the_bits(kind):
     assert bits(other.state()) == bits(whole)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("kind", KINDS)
 def test_equal_materials_are_one_material(kind):
     made, state = mixed_pile(**KINDS[kind])

@@ -37,6 +37,7 @@ def resting(law, v=0.0, omega=0.0, slope=0.0, rolling=None, d=D, **more):
     )
 
 
+@pytest.mark.full
 def test_a_sliding_sphere_ends_rolling_at_five_sevenths_of_its_speed():
     mu, v = 0.3, 0.2
     law = contact_law(k_n=1e3, mu=mu, zeta_n=0.3, zeta_s=0.3, slip=Slip.SPRING_DROP)
@@ -61,6 +62,7 @@ MODELS = {
 }
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rolling", MODELS.values(), ids=MODELS.keys())
 def test_a_rolling_sphere_stops_where_rolling_friction_says(rolling):
     # without its dashpot, which would brake harder than the slider until the slider moves
@@ -77,6 +79,7 @@ def test_a_rolling_sphere_stops_where_rolling_friction_says(rolling):
     assert lost == pytest.approx(energy, rel=3e-2)
 
 
+@pytest.mark.full
 def test_without_rolling_friction_a_sphere_rolls_on():
     v = 0.02
     law = contact_law(k_n=1e3, mu=0.5, zeta_n=0.3, zeta_s=0.3)
@@ -84,6 +87,7 @@ def test_without_rolling_friction_a_sphere_rolls_on():
     assert engine.state().v[0, 0] == pytest.approx(v, rel=1e-3)
 
 
+@pytest.mark.full
 def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
     # M_f calls up the very shear torque that it opposes, whatever the spin: it never lets go, and
     # makes energy
@@ -100,6 +104,7 @@ def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
     assert engine.tally().terms[Term.ROLL] < lost
 
 
+@pytest.mark.full
 def test_eq_13_limited_to_the_torque_it_opposes_slows_the_spinning_up_and_lets_a_rolling_sphere_roll_on():
     mu, v = 0.3, 0.2
     law = contact_law(k_n=1e3, mu=mu, zeta_n=0.3, zeta_s=0.3, slip=Slip.SPRING_DROP)
@@ -120,6 +125,7 @@ def test_eq_13_limited_to_the_torque_it_opposes_slows_the_spinning_up_and_lets_a
     assert engine.state().v[0, 0] == pytest.approx(0.5 * v, rel=2e-2)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", MODELS)
 def test_a_grain_rests_on_an_incline_below_the_rolling_friction_and_not_above(name):
     law = contact_law(k_n=1e3, mu=0.5, zeta_n=0.3, zeta_s=0.3)
@@ -135,6 +141,7 @@ def test_a_grain_rests_on_an_incline_below_the_rolling_friction_and_not_above(na
     assert abs(last.v[0, 0]) < 5e-3 * free
 
 
+@pytest.mark.full
 def test_a_spring_dashpot_slider_rests_and_a_constant_torque_creeps_with_the_step():
     # what the field says of types A and C (Ai et al. 2011): type A first lets the spin grow for a step
     flat = math.atan(0.5 * MU_R)
@@ -154,6 +161,7 @@ def test_a_spring_dashpot_slider_rests_and_a_constant_torque_creeps_with_the_ste
     assert abs(creep("spring-dashpot-slider", 50.0)) < 1e-6 * fine
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("heading", [0.0, 0.7, 2.5])
 def test_rolling_friction_stops_a_sphere_in_3d_in_any_direction(heading):
     v = 0.02
@@ -224,6 +232,7 @@ def test_added_mass_slows_the_start_and_not_the_weight():
     assert last.v[0, 2] == pytest.approx(-(2650.0 - 1000.0) / (2650.0 + 500.0) * G * 0.01, rel=1e-9)
 
 
+@pytest.mark.full
 def test_a_slow_spin_decays_after_stokes():
     d, spin = 2.0e-4, 5.0
     tau = 2650.0 * (0.5 * d) ** 2 / (15.0 * 1e-3)
@@ -238,6 +247,7 @@ def test_a_slow_spin_decays_after_stokes():
     assert engine.tally().residual < 1e-9
 
 
+@pytest.mark.full
 def test_a_fast_spin_decays_faster_than_stokes_by_the_ratio_of_dennis():
     spin, torques = 900.0, {}
     for law in (WaterTorque.STOKES, WaterTorque.DENNIS):
@@ -249,6 +259,7 @@ def test_a_fast_spin_decays_faster_than_stokes_by_the_ratio_of_dennis():
     assert torques[WaterTorque.DENNIS] / torques[WaterTorque.STOKES] == pytest.approx(ratio, rel=1e-3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rotation", [True, False])
 def test_a_grain_leaves_a_bed_pocket_at_30_degrees_or_30_plus_phi(rotation):
     # exact for hard equal grains; stiff springs and a slow look keep it within 0.2 degrees
@@ -283,6 +294,7 @@ def test_a_grain_leaves_a_bed_pocket_at_30_degrees_or_30_plus_phi(rotation):
     assert gone(leaves + 0.2)
 
 
+@pytest.mark.full
 def test_the_account_of_a_dropped_grain_closes():
     law = contact_law(zeta_n=collision.zeta_no_tension(0.7))
     made = scene([[0.0, 0.0, 3.0 * D]], D, x_fixed=[[0.0, 0.0, 0.0]], d_fixed=D, contact=law, gravity=G)

@@ -74,6 +74,7 @@ def test_two_grains_that_pass_each_other_within_a_step_exceed_the_overlap_limit(
 PHASES = np.linspace(0.0, 1.0, 17)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_head_on_impact_just_below_the_limit_is_detected(phase):
     gap = (2.0 + phase) * LARGEST_DISPLACEMENT * D
@@ -89,6 +90,7 @@ def test_a_head_on_impact_just_below_the_limit_is_detected(phase):
     assert x[0, 0] < x[1, 0] + 0.5 * D
 
 
+@pytest.mark.full
 def test_a_displacement_just_above_the_limit_stops_the_run_with_grain_and_remedy():
     made = shot([[0, 0, 0], [5 * D, 0, 0]], [[0, 0, 0], [-1, 0, 0]], D, ABOVE)
     step, fault = first_touch(made)
@@ -99,6 +101,7 @@ def test_a_displacement_just_above_the_limit_stops_the_run_with_grain_and_remedy
     assert "steps_per_contact" in fault.hint
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_grazing_contact_deeper_than_two_steps_can_miss_is_detected(phase):
     miss = D * (1.0 - 1.01 * HIDDEN)
@@ -107,6 +110,7 @@ def test_a_grazing_contact_deeper_than_two_steps_can_miss_is_detected(phase):
     assert first_touch(made)[0] is not None
 
 
+@pytest.mark.full
 def test_a_shallower_grazing_contact_can_be_missed():
     miss = D * (1.0 - 0.95 * HIDDEN)
     made = shot(
@@ -115,6 +119,7 @@ def test_a_shallower_grazing_contact_can_be_missed():
     assert first_touch(made)[0] is None
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize(("free", "fixed"), [(1.0, 0.2), (0.2, 1.0), (1.0, 1.0)])
 def test_the_impact_on_a_bed_grain_of_any_size_is_detected(phase, free, fixed):
@@ -128,6 +133,7 @@ def test_the_impact_on_a_bed_grain_of_any_size_is_detected(phase, free, fixed):
     assert isinstance(fault, ListUnsafe)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_contact_across_a_periodic_side_is_detected(phase):
     gap, length = (2.0 + phase) * LARGEST_DISPLACEMENT * D, 6 * D
@@ -137,6 +143,7 @@ def test_a_contact_across_a_periodic_side_is_detected(phase):
     assert fault is None
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("phase", PHASES)
 def test_the_impact_on_a_wall_is_detected_and_the_grain_does_not_pass_it(phase):
     wall = {"planes": [("floor", (0, 0, 0), (0, 0, 1))]}
@@ -153,6 +160,7 @@ def test_the_impact_on_a_wall_is_detected_and_the_grain_does_not_pass_it(phase):
     assert engine.state().x[0, 2] > -0.5 * D
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("aside", [0.0, 0.1, 0.25, 0.4, 0.5])
 @pytest.mark.parametrize("stiffness", [10.0, 100.0, 1e4])
 def test_a_grain_shot_through_a_closed_row_of_bed_grains_is_detected(aside, stiffness):

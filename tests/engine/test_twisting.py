@@ -29,6 +29,7 @@ def lying(spin, twisting, model=Rolling.NONE, **keys):
     )  # fmt: skip
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("model", [Rolling.NONE, Rolling.CONSTANT, Rolling.EPSD])
 @pytest.mark.parametrize("spin", [20.0, -20.0])
 def test_a_grain_that_spins_on_a_floor_slows_down_evenly_and_stops(model, spin):
@@ -48,6 +49,7 @@ def test_a_grain_that_spins_on_a_floor_slows_down_evenly_and_stops(model, spin):
     assert tally.residual < 1e-6
 
 
+@pytest.mark.full
 def test_two_grains_that_meet_head_on_share_spin_by_the_impulse_between_them():
     """While they slip about the normal the torque is c R* f: it changes both spins by c R* J/I."""
     made = scene(
@@ -65,6 +67,7 @@ def test_two_grains_that_meet_head_on_share_spin_by_the_impulse_between_them():
     assert engine.tally().terms[Term.ROLL] == pytest.approx(lost, rel=2e-3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("model", [Rolling.NONE, Rolling.EPSD])
 @pytest.mark.parametrize("law", [{}, {"contact": elastic_law(r=0.5 * D, friction=0.4, restitution=0.5)}])
 def test_a_pile_with_twisting_keeps_its_account_and_bits(model, law):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, contact_law, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.laws import collision
@@ -45,6 +46,7 @@ def head_on(e, partner="fixed", tension=False, water=None, phase=0.0, per_contac
 STILL = Water(profile=Profile.STILL, drag=Drag.NONE)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("tension", [False, True])
 @pytest.mark.parametrize("partner", ["fixed", "free"])
 @pytest.mark.parametrize("water", [None, STILL], ids=["dry", "added mass"])
@@ -63,6 +65,7 @@ def test_the_measured_restitution_is_that_of_the_case(e, partner, tension, water
     assert np.mean(times) == pytest.approx(1.0, abs=5.0e-3 if e >= 0.7 else 1.3e-2)
 
 
+@pytest.mark.full
 def test_error_of_restitution_falls_at_least_with_the_step():
     errors = []
     for per_contact in (50.0, 500.0):
@@ -72,6 +75,7 @@ def test_error_of_restitution_falls_at_least_with_the_step():
     assert errors[1] < 0.12 * errors[0]
 
 
+@pytest.mark.full
 def test_largest_overlap_follows_from_speed_mass_and_damping():
     event, _, engine = head_on(0.7, per_contact=400.0)
     scene_, law = engine._scene, engine._scene.contact
@@ -80,6 +84,7 @@ def test_largest_overlap_follows_from_speed_mass_and_damping():
     assert engine.tally().overlap_max == pytest.approx(expected / D, rel=5e-3)
 
 
+@pytest.mark.full
 def test_spring_energy_released_without_tension_is_the_known_share():
     _, _, engine = head_on(0.7, per_contact=1000.0)
     terms, law, m = engine.tally().terms, engine._scene.contact, float(engine._scene.m[0])
@@ -95,6 +100,7 @@ def test_spring_energy_released_without_tension_is_the_known_share():
     assert engine.tally().residual < 1e-4
 
 
+@pytest.mark.full
 def test_impulse_of_a_contact_is_the_change_of_momentum():
     event, _, engine = head_on(0.7)
     change = float(engine._scene.m[0]) * (event["v_end"] - event["v_begin"])
@@ -122,6 +128,7 @@ def oblique(angle, law, rotation=True, per_contact=400.0, speed=SPEED):
     return event, engine
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("slip", [Slip.SPRING_DROP, Slip.TOTAL])
 def test_gross_sliding_follows_the_sliding_law(slip):
     # exact for a cap on the total, and on the spring with tension and the dashpot dropped (validation.md, a)
@@ -138,6 +145,7 @@ def test_gross_sliding_follows_the_sliding_law(slip):
     assert event["t_slide"] > 0.95 * (event["t_end"] - event["t_begin"])
 
 
+@pytest.mark.full
 def test_gross_sliding_without_tension_has_a_smaller_impulse_if_the_spring_is_capped():
     # only the spring feeds the cap: (1 + e) becomes (1 + e) - 4 zeta**2 e (validation.md, a)
     e, mu, angle = 0.7, 0.1, math.radians(60.0)
@@ -149,6 +157,7 @@ def test_gross_sliding_without_tension_has_a_smaller_impulse_if_the_spring_is_ca
     assert lost == pytest.approx(mu * share * SPEED * math.cos(angle), rel=4e-3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rotation", [True, False])
 def test_a_sticking_impact_changes_the_tangential_speed_as_derived(rotation):
     ratio, angle = 2.0 / 7.0 if rotation else 0.6, math.radians(30.0)
@@ -159,6 +168,7 @@ def test_a_sticking_impact_changes_the_tangential_speed_as_derived(rotation):
     assert event["slip_end"][0] / event["slip_begin"][0] == pytest.approx(slip, abs=4e-3)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rotation", [True, False])
 @pytest.mark.parametrize("ratio", [0.1, 2.0 / 7.0, 0.6])
 def test_damped_sticking_gives_the_restitution_of_the_tangential_oscillator(rotation, ratio):
@@ -174,6 +184,7 @@ def test_damped_sticking_gives_the_restitution_of_the_tangential_oscillator(rota
     assert event["slip_end"][0] / event["slip_begin"][0] == pytest.approx(left, abs=4e-3)
 
 
+@pytest.mark.full
 def test_an_oblique_impact_in_3d_is_the_plane_one_turned():
     law = contact_law(mu=0.3, zeta_n=0.1, zeta_s=0.1)
     flat, _ = oblique(math.radians(40.0), law)
@@ -201,7 +212,7 @@ def test_an_oblique_impact_in_3d_is_the_plane_one_turned():
     assert event["v_end"][2] == pytest.approx(flat["v_end"][2], rel=1e-12)
 
 
-@pytest.mark.parametrize("timing", list(ContactTiming))
+@pytest.mark.parametrize("timing", full_but([ContactTiming.EXACT], ContactTiming))
 def test_the_plane_kernel_agrees_with_the_3d_kernel(timing):
     law = contact_law(mu=0.3, zeta_n=0.1, zeta_s=0.1, timing=timing)
     ends = []
@@ -220,6 +231,7 @@ def test_the_plane_kernel_agrees_with_the_3d_kernel(timing):
     assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-15)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("plane_case", [True, False])
 def test_angular_momentum_of_a_free_pair_is_kept_to_round_off(plane_case):
     law = contact_law(mu=0.4, zeta_n=0.1, zeta_s=0.2)
@@ -252,6 +264,7 @@ def test_angular_momentum_of_a_free_pair_is_kept_to_round_off(plane_case):
         assert after == pytest.approx(before, rel=0.0, abs=1e-11 * size)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("spin", "angle"), [((900.0, 0.0, 0.0), 1.2), ((0.0, 60.0, -20.0), 0.02)])
 def test_the_spring_of_a_pair_that_rotates_as_a_whole_rotates_with_it(spin, angle):
     # turned about its normal the positions stay; turned about another axis straight steps slip by k_s

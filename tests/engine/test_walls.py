@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import bits, elastic_law, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.build.walls import WallMotion, cylinder, disc, rectangle, triangles, with_walls
@@ -55,7 +56,7 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", full_but(["exact"], LAWS))
 def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(law):
     how = {"x": [[0.0, 0.0, 0.6 * D]], "v": [[0.3, 0.1, -0.2]], "omega": [[10.0, 20.0, 30.0]], **LAWS[law]}
     made = scene(planes=[("floor", (0, 0, 0), (0, 0, 1))], **how)
@@ -129,7 +130,7 @@ def test_a_tilted_split_plane_is_a_plane_to_round_off():
     assert np.allclose(plane.v, split.v, rtol=1e-7, atol=1e-7)
 
 
-@pytest.mark.parametrize("timing", TIMINGS)
+@pytest.mark.parametrize("timing", full_but([ContactTiming.EXACT], TIMINGS))
 def test_a_ball_swings_in_a_cylinder_as_a_pendulum(timing):
     """Without friction g sin/(R - r); rolling without slip 5/7 of it."""
     radius, angle = 0.05, 0.05
@@ -173,6 +174,7 @@ def test_a_ball_rolls_round_a_faceted_cylinder_as_round_the_exact_one():
     assert other.residual < 1e-4
 
 
+@pytest.mark.full
 def test_a_ball_slides_over_the_edge_of_a_box_and_keeps_its_energy():
     """Without friction and loss; the edge belongs to two faces, and pushes once."""
     box = [
@@ -235,7 +237,7 @@ def floor(**motion):
     return moving(rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0)), **motion)
 
 
-@pytest.mark.parametrize("timing", TIMINGS)
+@pytest.mark.parametrize("timing", full_but([ContactTiming.EXACT], TIMINGS))
 def test_a_ball_comes_back_from_a_moving_wall_faster_by_twice_its_speed(timing):
     made = walled(
         [floor(velocity=(0, 0, 0.05))], x=[[0, 0, 1.5 * R]], v=[[0, 0, -0.1]], restitution=1.0, gravity=0.0,
@@ -290,6 +292,7 @@ def test_a_ball_on_a_turntable_turns_with_it():
     assert np.array(engine.tally().walls)[5] != 0.0
 
 
+@pytest.mark.full
 def test_a_wall_that_swings_does_the_work_that_the_account_books():
     made = walled(
         [floor(amplitude=(0, 0, 0.5 * D), frequency=30.0)], x=[[0, 0, 1.2 * R]], restitution=0.9,
@@ -315,6 +318,7 @@ def drum(n=300, **more):
     return walled([wall], x=x, v=rng.normal(0, 0.1, x.shape), steps_per_contact=20.0, **law)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("law", [{}, {"contact": elastic_law(r=R, friction=0.4, restitution=0.5)}])
 def test_a_drum_gives_the_same_bits_for_any_threads_and_after_a_resume(law):
     made = drum(**law)

@@ -43,7 +43,12 @@ def kill(folder: Path, kind: str, kills: int, seed: int) -> None:
     not hasattr(os, "fork"), reason="kills a process that os.fork made, which this system has not"
 )
 @pytest.mark.parametrize(
-    "kind", [one if one in SHOWN else pytest.param(one, marks=pytest.mark.slow) for one in KINDS]
+    "kind",
+    [
+        "rolling",
+        *(pytest.param(one, marks=pytest.mark.full) for one in SHOWN[1:]),
+        *(pytest.param(one, marks=pytest.mark.slow) for one in KINDS if one not in SHOWN),
+    ],
 )
 def test_runs_killed_at_random_moments_lose_nothing_and_end_with_the_same_results(
     tmp_path: Path, kind: str
@@ -62,7 +67,7 @@ def test_two_hundred_kills_lose_nothing(tmp_path: Path, kind: str) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "seed"),
-    [("rolling", 5), ("two-way", 5)]
+    [("rolling", 5), pytest.param("two-way", 5, marks=pytest.mark.full)]
     + [pytest.param(kind, seed, marks=pytest.mark.slow) for kind in KINDS for seed in (11, 12, 13)],
 )
 def test_a_disk_that_fills_up_again_and_again_loses_nothing(
@@ -122,6 +127,7 @@ def stopped_half_way(kind: str, folder: Path) -> bytes:
     return (folder / schema.CHECKPOINT).read_bytes()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("times", [30, pytest.param(1_000, marks=pytest.mark.slow)])
 def test_truncated_flipped_and_foreign_checkpoints_are_refused_in_one_clear_line(
     tmp_path: Path, times: int
@@ -191,6 +197,7 @@ def test_a_small_disk_that_is_full_pauses_a_run_until_there_is_room(tmp_path: Pa
     assert "nothing lost" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.full
 def test_a_folder_is_read_while_it_is_written(tmp_path: Path) -> None:
     code = f"import sys; sys.path.insert(0, {str(HERE)!r}); import campaign; from pathlib import Path; "
     code += "campaign.recorder.flush_after = lambda elapsed, n: 0.0; "
@@ -229,6 +236,7 @@ run("two-way", folder)
 """
 
 
+@pytest.mark.full
 def test_a_run_is_viewed_filmed_drawn_and_measured_while_it_goes_on(tmp_path: Path) -> None:
     folder, looked = tmp_path / "run", tmp_path / "looked"
     writer = subprocess.Popen([sys.executable, "-c", LOOKED_AT, str(HERE), str(folder), str(looked)])

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.kernel_variants import full_but
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -32,6 +33,7 @@ SHORT = {
     "mesh": "0.01 s", "materials": "0.05 s", "servo": "0.02 s", "clumps": "0.01 s",
 }  # fmt: skip
 SHOWN = ("two-way", "feeds", "servo", "clumps")  # one for each thing that a folder may hold beside grains
+QUICK = ("dry-2d", "rolling", "servo", "clumps")  # by `make test`
 IN_SPACE = ("walls", "feeds", "mesh", "materials", "servo", "clumps")
 FAST = settings(
     max_examples=25,
@@ -46,7 +48,7 @@ def go(kind: str, folder: Path, **how: Any) -> Results:
     return ryusa.run(case, folder, progress=False, **how)
 
 
-@pytest.fixture(scope="module", params=list(SHORT))
+@pytest.fixture(scope="module", params=full_but(QUICK, SHORT))
 def stopped(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     """A run of each kind, stopped in the middle with a checkpoint."""
     kind, folder = request.param, tmp_path_factory.mktemp("run") / "run"
@@ -249,7 +251,7 @@ def fuzzed(trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.Dat
 
 
 @pytest.mark.parametrize("trick", TRICKS)
-@pytest.mark.parametrize("stopped", SHOWN, indirect=True, scope="module")
+@pytest.mark.parametrize("stopped", full_but(["clumps"], SHOWN), indirect=True, scope="module")
 @FAST
 @given(data=st.data())
 def test_a_manipulated_folder_is_used_or_refused_by_name(

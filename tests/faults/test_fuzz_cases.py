@@ -36,6 +36,7 @@ def test_a_manipulated_case_file_is_used_or_refused_by_name(
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]
 
 
+@pytest.mark.full
 def test_manipulated_case_files_get_an_answer_from_the_command_line(tmp_path: Path) -> None:
     tally = cli(tmp_path, 4, 5)
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]

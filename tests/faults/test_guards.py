@@ -140,6 +140,7 @@ def test_an_excessive_speed_stops_the_run(tmp_path: Path) -> None:
     assert "time.steps_per_contact" in fault.hint
 
 
+@pytest.mark.full
 def test_created_energy_stops_the_run(tmp_path: Path) -> None:
     """Grains that boil because the step is too long, and would do so for ever."""
     n, draw = 60, np.random.default_rng(1)
@@ -198,6 +199,7 @@ def test_a_small_grain_in_the_bed_limits_the_speed_of_a_large_one(tmp_path: Path
     assert 5.0 + 1e4 * fault.t == pytest.approx(way / made[0].dt, rel=1e-2)
 
 
+@pytest.mark.full
 def test_a_column_without_solution_stops_the_run(tmp_path: Path) -> None:
     """Soft grains under a huge weight are pressed so close that drag outruns the step."""
     settings = {

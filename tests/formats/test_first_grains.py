@@ -145,6 +145,7 @@ def test_a_run_folder_holds_the_grains_that_it_started_from(falling: Results, tm
     assert np.array_equal(again.frames.x[-1], Results.open(tmp_path / "on").frames.x[-1])
 
 
+@pytest.mark.full
 def test_groups_planes_and_the_zero_of_the_water_come_from_the_run(tmp_path: Path) -> None:
     from ryusa.cases import case_path
 

@@ -18,17 +18,33 @@ BY_LAW_ALONE = {
 }  # fmt: skip
 IMPORT_ALL = """
 import importlib, json, sys, types
+from ryusa.laws import families
+from ryusa.laws._family import Family
+
+for room in ("build", "water.coupling", "engine.cpu.engine"):
+    importlib.import_module("ryusa." + room)
+
+def of_families(thing):
+    kind = thing if isinstance(thing, type) else type(thing)
+    return thing is families or issubclass(kind, Family) and kind is not Family
+
+# Modules that hold a family, a choice or the table of families; the others cannot ask for any of them.
+holders = [
+    name for name, module in sys.modules.items()
+    if name.partition(".")[0] == "ryusa" and module is not families
+    and any(of_families(thing) for thing in list(vars(module).values()))
+]
 answers = {}
 for name, source in json.load(sys.stdin).items():
-    for known in [known for known in sys.modules if known.partition(".")[0] == "ryusa"]:
-        del sys.modules[known]
     answers[name] = ""
     try:
-        importlib.import_module("ryusa.laws")
         table = sys.modules["ryusa.laws.families"] = types.ModuleType("ryusa.laws.families")
+        sys.modules["ryusa.laws"].families = table
         exec(compile(source, "families.py", "exec"), vars(table))
-        for room in ("build", "water.coupling", "engine.cpu.engine"):
-            importlib.import_module("ryusa." + room)
+        for holder in holders:
+            sys.modules.pop(holder, None)
+        for holder in holders:
+            importlib.import_module(holder)
     except TypeError as error:
         answers[name] = str(error)
 print(json.dumps(answers))

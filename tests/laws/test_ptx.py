@@ -21,6 +21,7 @@ def card(monkeypatch):
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=CC))
 
 
+@pytest.mark.full
 def test_a_law_compiles_to_ptx(law):
     signature = tuple(LABEL[kind] for kind in law.kinds)
     ptx, answer = cuda.compile(law.plain, signature, device=True, abi="numba", cc=CC)

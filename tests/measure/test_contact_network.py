@@ -60,6 +60,7 @@ def test_a_contact_with_a_plane_ends_at_the_point_of_touch(tmp_path, forces):
     assert found.rows()[0]["f_n_N"] == found.f_n[0]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("slides", [True, False])
 def test_a_grain_on_an_incline_slides_above_the_friction_angle_and_sticks_below(tmp_path, slides):
     slope, mu = 0.4, math.tan(0.3 if slides else 0.5)  # slope as an angle

@@ -24,7 +24,9 @@ from ryusa.view.page import encoded
 
 HEAP = case_path("poured_heap.toml").read_text()
 TEXT = (
-    HEAP[: HEAP.index("[[feeds]]")].replace('plate = "4 cm"', "")
+    (HEAP[: HEAP.index("[rolling]")] + HEAP[HEAP.index("[motion]") : HEAP.index("[[feeds]]")]).replace(
+        'plate = "4 cm"', ""
+    )
     + """
 [[feeds]]
 name = "hose"
@@ -45,7 +47,10 @@ normal = [0, 0, -1]
 @pytest.fixture(scope="module")
 def fed(tmp_path_factory: pytest.TempPathFactory) -> Results:
     """Grains that fall through a hose past an exit: forty in a second, each half a second on its way."""
-    changes = {"contact.stiffness": "1 N/cm", "stop.time": "1.5 s", "record.frames": "50 ms"}
+    changes = {
+        "contact.stiffness": "1 N/cm", "stop.time": "1.5 s", "record.frames": "50 ms",
+        "record.events": "all",  # as other runs of `make test`
+    }  # fmt: skip
     folder = tmp_path_factory.mktemp("fed") / "run"
     return ryusa.run(read_text(TEXT, changes), folder, progress=False)
 
@@ -163,6 +168,7 @@ def test_a_film_is_drawn_and_follows_no_grain(fed: Results, tmp_path: Path) -> N
         film(fed, tmp_path / "film.webp", frames=3, follow=0)
 
 
+@pytest.mark.full
 def test_a_silo_discharges_at_the_rate_of_beverloo(tmp_path: Path) -> None:
     """Two thirds of the grains of the packaged case: C between 0.45 and 0.7 with k = 1.4, for one seed."""
     less = {"build.most": "3000", "contact.stiffness": "100 N/cm", "stop.time": "0.8 s"}

@@ -36,11 +36,13 @@ def test_a_steady_record_is_seldom_called_unsteady(rate):
     judge(rate)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rate", asked(rates.misses()), ids=lambda one: one.what)
 def test_a_change_is_seldom_missed_and_a_large_one_never_excuses_itself(rate):
     judge(rate, 200)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "rate", asked([*rates.errors(), *rates.begins()]), ids=lambda one: f"{one.group}, {one.what}"
 )

@@ -107,6 +107,7 @@ def test_classes_hold_every_grain_and_all_mass_whatever_the_sieves() -> None:
     assert found.series()[-1]["finer_laid"] == pytest.approx(1.0)
 
 
+@pytest.mark.full
 def test_a_run_shows_what_was_laid_beside_what_was_asked(folder: Path, tmp_path: Path) -> None:
     found = sizes(Results.open(folder))
     assert found.asked is not None
@@ -129,6 +130,7 @@ def test_a_run_shows_what_was_laid_beside_what_was_asked(folder: Path, tmp_path:
     assert json.loads(call("measure", folder, "sizes", "--json").output)["rows"][2]["quantity"] == "D50"
 
 
+@pytest.mark.full
 def test_its_picture_has_both_curves(folder: Path, tmp_path: Path) -> None:
     result = call("draw", folder, "sizes", "-o", tmp_path / "sizes.png")
     assert result.exit_code == 0, result.output
@@ -140,6 +142,7 @@ def test_its_picture_has_both_curves(folder: Path, tmp_path: Path) -> None:
     assert figures.sizes(sizes(stand_in([0.002] * 3))).axes[0].get_legend() is not None
 
 
+@pytest.mark.full
 def test_a_run_folder_keeps_its_curve_and_resumes_without_the_case(folder: Path, tmp_path: Path) -> None:
     assert (folder / schema.SIEVE).read_text(encoding="utf-8") == CSV
     moved = tmp_path / "elsewhere"
@@ -158,6 +161,7 @@ def test_a_run_folder_keeps_its_curve_and_resumes_without_the_case(folder: Path,
     assert np.array_equal(whole.frames[-1].v, once.frames[-1].v)
 
 
+@pytest.mark.full
 def test_a_run_is_not_resumed_with_another_curve(folder: Path, tmp_path: Path) -> None:
     home = tmp_path / "home"
     shutil.copytree(folder, home / "run")

@@ -126,6 +126,7 @@ def test_every_builder_has_a_picture_and_every_name_is_a_builder():
     assert {kind for one in (*MEASURES, *PICTURES) for kind in one.builders} <= kinds
 
 
+@pytest.mark.full
 def test_the_command_writes_beside_the_run_or_where_it_is_asked(runs, tmp_path):
     result = CliRunner().invoke(app, ["report", str(runs[0].folder), "-q"])
     assert result.exit_code == 0, result.output

@@ -16,6 +16,8 @@ from ryusa.cases import case_path
 from ryusa.errors import CaseError, ResultsError
 from ryusa.results import Results
 
+pytestmark = pytest.mark.full
+
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Results:

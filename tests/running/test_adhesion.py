@@ -16,6 +16,8 @@ from ryusa.results import Results, schema
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
 
+pytestmark = pytest.mark.full
+
 CASE = """
 [grains]
 diameter = "2 mm"

@@ -83,6 +83,7 @@ def wet(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return ryusa.run(read_text(CLUMPS_IN_WATER), tmp_path_factory.mktemp("c") / "run", progress=False)
 
 
+@pytest.mark.full
 def test_a_stopped_run_of_clumps_in_water_resumes_with_the_same_bits(
     wet: Results, tmp_path: Path, stop_at: Any
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_stopped_run_of_clumps_in_water_resumes_with_the_same_bits(
     assert differences(wet.folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 def test_what_spheres_of_a_clump_share_counts_once(wet: Results) -> None:
     """Solid volume over the bed and its flux are those of the clumps, not of all their spheres."""
     scene, area = wet.scene, 0.016 * 0.012

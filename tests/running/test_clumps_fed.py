@@ -43,6 +43,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return ryusa.run(read_text(CLUMPS_FED), tmp_path_factory.mktemp("fed") / "run", progress=False)
 
 
+@pytest.mark.full
 def test_a_clump_counts_once_with_its_own_mass_and_size(whole: Results) -> None:
     scene, rows = whole.scene, whole.passages
     bodies = scene.bodies
@@ -59,6 +60,7 @@ def test_a_clump_counts_once_with_its_own_mass_and_size(whole: Results) -> None:
         assert ways.tolist() == [IN, OUT] * (len(ways) // 2) + [IN] * (len(ways) % 2)
 
 
+@pytest.mark.full
 def test_every_frame_holds_what_entered_less_what_left(whole: Results) -> None:
     scene, bodies = whole.scene, whole.bodies
     assert scene.bodies is not None
@@ -82,6 +84,7 @@ def test_every_frame_holds_what_entered_less_what_left(whole: Results) -> None:
     assert found.m[-1] == pytest.approx(scene.m[there].sum(), rel=1e-12)
 
 
+@pytest.mark.full
 def test_no_sphere_of_a_clump_enters_on_top_of_another(tmp_path: Path) -> None:
     text = CLUMPS_FED.replace('[stop]\ntime = "0.2 s"', '[stop]\ntime = "0.03 s"')
     text = text.replace('frames = "2 ms"', 'frames = "0.02 ms"').replace('at = "0.14 s"', 'at = "0.02 s"')
@@ -102,6 +105,7 @@ def test_no_sphere_of_a_clump_enters_on_top_of_another(tmp_path: Path) -> None:
     assert checked > 100
 
 
+@pytest.mark.full
 def test_orientations_at_entry_are_even(whole: Results) -> None:
     """The axes of clumps that enter point to all sides: the mean of n n^T is 1/3 of the unit matrix."""
     from ryusa.model.rigid_bodies import BodyState
@@ -164,15 +168,18 @@ def test_a_clump_passes_from_feed_to_exit_in_the_time_of_free_fall(tmp_path: Pat
     assert run.tally["spin"][1] > 1e-7
 
 
+@pytest.mark.full
 def test_the_energy_account_closes_where_clumps_leave_out_of_contacts(whole: Results) -> None:
     assert whole.tally["residual"].max() < 2e-3
 
 
+@pytest.mark.full
 def test_any_number_of_threads_gives_the_same_bits(whole: Results, tmp_path: Path) -> None:
     ryusa.run(read_text(CLUMPS_FED), tmp_path / "run", progress=False, threads=2)
     assert differences(whole.folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("beside", [-1, 0, 1])
 def test_a_stopped_run_resumes_with_the_same_bits(
     whole: Results, tmp_path: Path, stop_at: Any, beside: int
@@ -187,6 +194,7 @@ def test_a_stopped_run_resumes_with_the_same_bits(
     assert differences(whole.folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 def test_pictures_view_and_tables_show_those_that_are_there(whole: Results, tmp_path: Path) -> None:
     whole.draw("grains")
     whole.draw("discharge", begin=0.0)
@@ -227,6 +235,7 @@ def test_a_clump_taken_out_of_a_contact_leaves_no_imbalance() -> None:
     assert engine.tally().spring_n == 0.0
 
 
+@pytest.mark.full
 def test_clumps_fed_into_water_of_a_given_profile_settle_and_the_account_closes(tmp_path: Path) -> None:
     """They fall a long way through still water, and leave at the speed that the law of their form gives."""
     n = 8

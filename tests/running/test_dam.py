@@ -11,6 +11,8 @@ from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.results import Results
 
+pytestmark = pytest.mark.full
+
 COARSE = {"grains.diameter": "16 mm", "stop.time": "2 s"}  # a ninth of the grains
 
 

@@ -160,6 +160,7 @@ def test_its_file_is_exact(place: Path) -> None:
         FeederReach.from_bytes(found.to_bytes().replace(b'"t": [', b'"t": [0.0, '))
 
 
+@pytest.mark.full
 def test_each_grain_enters_once_when_it_is_due_where_it_crossed(place: Path, fed: Results) -> None:
     reach = reach_of(river(place))
     assert reach is not None and fed.scene.traffic is not None
@@ -185,6 +186,7 @@ def test_each_grain_enters_once_when_it_is_due_where_it_crossed(place: Path, fed
     assert discharge(fed).rows() and passages(fed).gates[0].name == "reach"
 
 
+@pytest.mark.full
 def test_the_discharge_of_the_reach_enters_with_its_profile_and_its_depth(place: Path, fed: Results) -> None:
     reach, end, water = reach_of(river(place)), fed.scene.row, fed.row
     assert reach is not None and end is not None and end.upstream is not None and water is not None
@@ -196,6 +198,7 @@ def test_the_discharge_of_the_reach_enters_with_its_profile_and_its_depth(place:
     assert end.upstream.depth == pytest.approx(reach.depth)  # faster than waves
 
 
+@pytest.mark.full
 def test_a_river_resumes_with_the_same_bits_without_its_reach_on_any_threads(
     place: Path, fed: Results, tmp_path: Path, stop_at: Any
 ) -> None:
@@ -214,6 +217,7 @@ def test_a_river_resumes_with_the_same_bits_without_its_reach_on_any_threads(
     assert said["run"] == "runs/even" and said["sha256"] == digest_of((folder / schema.REACH).read_bytes())
 
 
+@pytest.mark.full
 def test_a_changed_copy_of_the_reach_is_refused(place: Path, fed: Results, tmp_path: Path) -> None:
     shutil.copytree(fed.folder, tmp_path / "river")
     kept = tmp_path / "river" / schema.REACH
@@ -282,6 +286,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("keys", "said"), REFUSED, ids=[next(iter(keys)) for keys, _ in REFUSED])
 def test_what_cannot_feed_a_river_is_refused_before_any_work(
     place: Path, fed: Results, keys: dict[str, str], said: str
@@ -338,6 +343,7 @@ def test_between_side_walls_a_record_is_repeated_without_a_shift(place: Path) ->
     np.testing.assert_array_equal(again, reach.y[: len(again)])
 
 
+@pytest.mark.full
 def test_grains_that_crept_in_the_bed_enter_on_a_bottom_without_one(place: Path, tmp_path: Path) -> None:
     shutil.copytree(place / "runs" / "even", tmp_path / "runs" / "even")
     bare = {

@@ -27,6 +27,7 @@ from ryusa.results import schema
 from ryusa.running import recorder
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("name", "keys"),
     [
@@ -75,6 +76,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
+@pytest.mark.full
 @pytest.mark.skipif(find_spec("resource") is None, reason="the peak of a process is known on Unix alone")
 def test_a_run_takes_as_much_memory_as_expected(tmp_path: Path) -> None:
     """20,000 grains for a few steps; the first run compiles, the second one counts. Band: 20 %."""

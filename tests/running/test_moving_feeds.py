@@ -157,6 +157,7 @@ RISES = changed(
 )  # fmt: skip
 
 
+@pytest.mark.full
 def test_a_hose_rises_with_a_cylinder_from_the_moment_that_the_timeline_lifts_it(tmp_path: Path) -> None:
     run = ryusa.run(read_text(RISES), tmp_path / "run", progress=False)
     rows = run.passages[run.passages["way"] == IN]

@@ -180,6 +180,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("whole") / "run")
 
 
+@pytest.mark.full
 def test_a_run_ends_when_its_average_is_known_well_enough(whole: Results) -> None:
     found = whole.measure("transport").averages["q_star"]
     assert whole.complete
@@ -197,6 +198,7 @@ def test_a_run_ends_when_its_average_is_known_well_enough(whole: Results) -> Non
     assert any(line.startswith("precision") and kept["text"] in line for line in inspection(whole.folder))
 
 
+@pytest.mark.full
 def test_a_run_that_was_stopped_and_continued_ends_at_the_same_step(
     tmp_path: Path, stop_at: Any, whole: Results
 ) -> None:
@@ -208,6 +210,7 @@ def test_a_run_that_was_stopped_and_continued_ends_at_the_same_step(
     assert differences(whole.folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 def test_a_killed_run_continued_behind_its_own_frames_ends_at_the_same_step(
     tmp_path: Path, stop_at: Any, whole: Results, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -223,6 +226,7 @@ def test_a_killed_run_continued_behind_its_own_frames_ends_at_the_same_step(
     assert differences(whole.folder, folder) == []
 
 
+@pytest.mark.full
 def test_a_run_killed_after_the_checkpoint_of_its_last_step_adds_no_step(
     tmp_path: Path, whole: Results, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -247,10 +251,12 @@ def _killed_at(step: int) -> Any:
     return killed
 
 
+@pytest.mark.full
 def test_other_threads_end_at_the_same_step(tmp_path: Path, whole: Results) -> None:
     assert differences(whole.folder, run(tmp_path / "run", threads=2).folder) == []
 
 
+@pytest.mark.full
 def test_a_complete_run_goes_on_to_a_stricter_precision(tmp_path: Path, whole: Results) -> None:
     stricter = {"stop.precision.q_star": "1.5 %"}
     direct = run(tmp_path / "direct", stricter)
@@ -263,6 +269,7 @@ def test_a_complete_run_goes_on_to_a_stricter_precision(tmp_path: Path, whole: R
     assert run(tmp_path / "run", stricter, resume=True).summary["steps"] == direct.summary["steps"]
 
 
+@pytest.mark.full
 def test_a_run_that_reaches_its_last_time_first_says_how_much_longer_it_would_take(tmp_path: Path) -> None:
     early = {"stop.time": "0.5 s", "stop.precision.q_star": "0.5 %"}
     results = run(tmp_path / "run", early)

@@ -88,6 +88,7 @@ def check_frames(folder: Path, at_least: int) -> int:
     return min(n, len(steps))  # between a part and the index that names it a reader may look
 
 
+@pytest.mark.full
 def test_after_sigkill_at_any_moment_every_flushed_frame_is_readable(writer: Any) -> None:
     rng = np.random.default_rng(7)
     running = [writer(f"run{k}") for k in range(2)]

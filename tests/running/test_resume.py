@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.kernel_variants import full_but
 
 import ryusa
 from ryusa.build import scene as scene_of
@@ -307,7 +308,7 @@ def test_a_case_with_a_table_is_resumed_from_its_run_folder_alone(tmp_path: Path
 MEANS = ("travel_over_d", "restitution", "restitution_shear")
 
 
-@pytest.mark.parametrize("kind", ["dry-3d", "two-way", "saltation"])
+@pytest.mark.parametrize("kind", full_but(["dry-3d", "saltation"], ["dry-3d", "two-way", "saltation"]))
 @pytest.mark.parametrize("first", ["0.05 s", "0.0717 s"])
 def test_a_complete_run_is_lengthened_to_the_bits_of_a_longer_one(
     kind: str, first: str, tmp_path: Path

@@ -77,6 +77,7 @@ def bed(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Results]:
     }
 
 
+@pytest.mark.full
 def test_a_grain_is_pressed_with_the_force_asked(one: Results) -> None:
     """Both springs of the grain are then as short as Hooke's law says, and the lid stands on it."""
     found = one.measure("walls", begin=0.2)
@@ -89,6 +90,7 @@ def test_a_grain_is_pressed_with_the_force_asked(one: Results) -> None:
     assert {"travel_m", "contacts"} <= set(found.rows()[0])
 
 
+@pytest.mark.full
 def test_the_wall_stands_in_results_where_it_was(one: Results) -> None:
     t = one.frames.t
     for k in (0, 3, len(t) - 1):
@@ -137,6 +139,7 @@ def test_the_mean_force_on_grains_that_flow_is_the_one_asked() -> None:
     assert np.mean(forces[10_000:]) == pytest.approx(FORCE, rel=0.03)
 
 
+@pytest.mark.full
 def test_the_impulse_of_the_wall_is_the_change_of_momentum(one: Results) -> None:
     """Over a time in which the grain falls to the floor and is pressed: floor and lid carry its weight."""
     m, first = one.scene.m, 25
@@ -159,6 +162,7 @@ def test_a_run_resumes_with_the_same_bits(
     assert differences(bed[servo].folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 def test_a_wall_with_nothing_in_its_way_ends_the_run(tmp_path: Path) -> None:
     """It comes down beside the grain, which the check before the run cannot tell from one below it."""
     beside = 'at = ["2 cm", "0 cm", "5 mm"]'
@@ -175,6 +179,7 @@ def test_a_wall_with_nothing_in_its_way_ends_the_run(tmp_path: Path) -> None:
     assert left.wall_travel[-1, 0] == pytest.approx(0.05 * left.frames.t[-1], rel=0.05)
 
 
+@pytest.mark.full
 def test_the_page_moves_the_wall_at_every_frame(one: Results, tmp_path: Path) -> None:
     one.view().save(tmp_path / "view.html")
     text = (tmp_path / "view.html").read_text()

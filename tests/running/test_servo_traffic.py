@@ -71,6 +71,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return done(SERVO_FEEDS, tmp_path_factory.mktemp("servo") / "run")
 
 
+@pytest.mark.full
 def test_a_lid_sinks_through_an_empty_box_and_presses_the_grain_that_is_fed(tmp_path: Path) -> None:
     run = done(EMPTY, tmp_path / "run")
     assert len(run.passages) == 1

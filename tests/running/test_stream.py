@@ -114,6 +114,7 @@ def stream(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("stream") / "run")
 
 
+@pytest.mark.full
 def test_grains_enter_and_leave_and_the_water_is_kept(stream: Results) -> None:
     found, water = stream.row, stream.summary["water"]
     assert found is not None
@@ -126,6 +127,7 @@ def test_grains_enter_and_leave_and_the_water_is_kept(stream: Results) -> None:
     assert stream.summary["energy"]["residual"] < 1e-2
 
 
+@pytest.mark.full
 def test_all_grains_that_are_there_are_in_the_segments(stream: Results) -> None:
     found, scene = stream.row, stream.scene
     assert found is not None
@@ -137,6 +139,7 @@ def test_all_grains_that_are_there_are_in_the_segments(stream: Results) -> None:
     assert found.phi[:, 10:12, :5].max() == 0.0  # of the dam
 
 
+@pytest.mark.full
 def test_a_run_that_was_stopped_and_two_threads_give_the_same_bits(
     stream: Results, tmp_path: Path, stop_at: Any
 ) -> None:
@@ -147,6 +150,7 @@ def test_a_run_that_was_stopped_and_two_threads_give_the_same_bits(
     assert differences(stream.folder, tmp_path / "run") == []
 
 
+@pytest.mark.full
 def test_water_enters_over_the_bed_in_the_first_segment_and_resumes_with_the_same_bits(
     tmp_path: Path, stop_at: Any
 ) -> None:
@@ -186,6 +190,7 @@ def test_a_bed_at_rest_that_is_looser_than_packed_warns() -> None:
     assert len(water(**{"build.bed": "'3 mm'"}).densest_beds()) == 0
 
 
+@pytest.mark.full
 def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results) -> None:
     scene = stream.scene
     assert scene.walls is not None
@@ -198,6 +203,7 @@ def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results)
     assert not inside.any()
 
 
+@pytest.mark.full
 def test_the_report_has_the_measures_that_the_run_allows_and_one_number_of_grains(stream: Results) -> None:
     found = contents_of(stream, size=5.0e6, progress=lambda share: None)
     tables = {one.name: one for one in found.measures}
@@ -246,6 +252,7 @@ QUIET = {
 }  # fmt: skip
 
 
+@pytest.mark.full
 def test_walls_carry_the_weight_under_water_of_grains_at_rest_behind_a_dam(tmp_path: Path) -> None:
     """Bottom and dam together: m g less that of the water displaced, along and normal to the axis."""
     found = ryusa.run(
@@ -277,6 +284,7 @@ SLIDER = {
 }  # fmt: skip
 
 
+@pytest.mark.full
 def test_a_heavy_grain_slides_down_an_inclined_reach_as_drag_weight_and_friction_say(tmp_path: Path) -> None:
     """Drag of the slip r takes (mu cos - sin) of the weight under water; the grain is slower by r."""
     found = run(tmp_path / "run", SLIDER)
@@ -339,6 +347,7 @@ def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], k
     assert any(one.key == key and says in one.line for one in faults), [one.line for one in faults]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("name", "walls_of_it"),
     [
@@ -369,6 +378,7 @@ def test_a_stream_without_a_row_is_refused() -> None:
         read_text(text)
 
 
+@pytest.mark.full
 def test_a_report_has_the_pictures_of_a_stream_and_none_of_a_heap(stream: Results) -> None:
     found = contents_of(stream, size=5.0e6, progress=lambda share: None)
     drawn = {one.name for one in found.drawings}
@@ -385,6 +395,7 @@ def test_a_sweep_may_measure_the_walls_of_a_stream() -> None:
         refuse_measure(entries["contact_stress"], case)
 
 
+@pytest.mark.full
 def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Path) -> None:
     """It flies over the box of the exit, which reaches as high as the water can."""
     more = {
@@ -401,6 +412,7 @@ def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Pat
     assert 0.0 < fault.t < 0.02 + flight / 4.0
 
 
+@pytest.mark.full
 def test_a_clump_leaves_a_stream_with_its_centre(tmp_path: Path) -> None:
     """One of its spheres is beyond the row before its centre is at the exit."""
     more = {
@@ -434,6 +446,7 @@ def test_the_lattice_of_a_bed_ends_at_a_dam_and_loses_no_column_to_rounding(begi
     assert columns.tolist() == beside
 
 
+@pytest.mark.full
 def test_measures_along_the_row_count_every_grain_that_came_and_left(stream: Results) -> None:
     row, frames = stream.row.row, np.arange(len(stream.frames))
     held = grains_along_row(stream, row, frames)
@@ -461,6 +474,7 @@ def flood(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("flood") / "run", FLOOD)
 
 
+@pytest.mark.full
 def test_each_discharge_acts_among_grains_in_its_own_time(flood: Results) -> None:
     """The water is behind by the unfinished interval alone, and is never ahead."""
     found, dt = flood.row, flood.scene.dt
@@ -472,6 +486,7 @@ def test_each_discharge_acts_among_grains_in_its_own_time(flood: Results) -> Non
     assert (behind <= q * (found.row.column.interval + 1) * dt).all()
 
 
+@pytest.mark.full
 def test_a_run_stopped_within_a_flood_among_grains_gives_the_same_bits(
     flood: Results, tmp_path: Path, stop_at: Any
 ) -> None:

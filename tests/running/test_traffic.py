@@ -236,6 +236,7 @@ def test_a_scene_without_feeds_needs_no_pool_and_keeps_its_digest() -> None:
     assert scene_digest(other) != scene_digest(scene)
 
 
+@pytest.mark.full
 def test_a_grain_reaches_rest_only_after_the_last_has_entered(tmp_path: Path) -> None:
     scene, state = fed(4, 1, (disc(rate=5.0, begin=0.3, first=1, count=3),), planes=FLOOR, rotation=False)
     results = run_scene(

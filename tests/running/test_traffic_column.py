@@ -26,6 +26,8 @@ from ryusa.water.coupling import Coupling
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
 
+pytestmark = pytest.mark.full
+
 RHO, G = 1000.0, 9.80665
 INTERVAL, STEPS, EVERY = 40, 2000, 25
 

@@ -23,6 +23,8 @@ from ryusa.water.row_coupling import RowCoupling
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
 
+pytestmark = pytest.mark.full
+
 SEGMENTS, EVERY = 4, 25
 
 

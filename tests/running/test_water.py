@@ -150,6 +150,7 @@ def test_grains_removed_by_the_timeline_no_longer_fill_the_column() -> None:
     assert water.budget is not None and water.budget.fixed == 0.0
 
 
+@pytest.mark.full
 def test_a_run_without_a_column_has_no_water(tmp_path: Path) -> None:
     fixed, first = scene([[0.0, 0.0, 0.01]], D, events=EventRule.NONE)
     results = run_scene(

@@ -18,6 +18,7 @@ from ryusa.study import (
 )
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("means", [(0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.5, 0.2)])
 @pytest.mark.parametrize("first", [0.3, 0.6, 1.5])
 def test_the_largest_mean_is_covered_though_the_largest_number_picks_the_noise(means, first):

@@ -16,6 +16,8 @@ from ryusa.study import remote
 from ryusa.study.remote import Site, WorkerError, in_process, packed_site, unpacked
 from ryusa.study.user import open_study
 
+pytestmark = pytest.mark.full
+
 
 @pytest.fixture
 def site(tmp_path):

@@ -335,6 +335,7 @@ def gone(pid):
 needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
 
 
+@pytest.mark.full
 @needs_proc
 @pytest.mark.parametrize("how", ["ctrl-c", "term"])
 def test_an_interrupt_ends_every_process_and_says_how_to_continue(campaign, how):
@@ -349,6 +350,7 @@ def test_an_interrupt_ends_every_process_and_says_how_to_continue(campaign, how)
     assert gone(campaign.pid)
 
 
+@pytest.mark.full
 @needs_proc
 def test_a_run_whose_process_was_killed_is_tried_once_more_and_costs_no_other(campaign):
     workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
@@ -376,6 +378,7 @@ def load(name):
 """
 
 
+@pytest.mark.full
 def test_a_run_that_ends_its_process_every_time_costs_no_other(tmp_path, monkeypatch):
     (tmp_path / "deadly_part.py").write_text(DEADLY)  # a module that processes of their own can import
     monkeypatch.syspath_prepend(tmp_path)
@@ -388,6 +391,7 @@ def test_a_run_that_ends_its_process_every_time_costs_no_other(tmp_path, monkeyp
     assert "ended from outside twice" in next(iter(found.problems.values()))
 
 
+@pytest.mark.full
 @needs_proc
 def test_no_process_outlives_a_killed_study(campaign):
     campaign.kill()

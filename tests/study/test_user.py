@@ -40,6 +40,7 @@ def blocks():
     return re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
 
 
+@pytest.mark.full
 def test_the_study_of_the_page_runs_and_gets_means_intervals_and_a_picture(folder, tmp_path):
     plain, judged = blocks()
     write(folder, plain)

@@ -10,6 +10,7 @@ from ryusa.laws.families import Buoyancy
 from ryusa.studies.validation.balance import ChannelFlow
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("form", list(Buoyancy))
 def test_bed_and_fixed_grains_carry_the_weight_of_the_mixture(form):
     flow = ChannelFlow(form, seed=1)

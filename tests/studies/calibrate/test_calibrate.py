@@ -72,6 +72,7 @@ def done(study, tmp_path_factory):
     return call(study, "-o", out, "-j", 1, "--coverage", 5), out
 
 
+@pytest.mark.full
 def test_restitution_is_found_and_friction_is_not_determined_by_a_central_impact(done):
     result, out = done
     assert result.exit_code == 0, result.output
@@ -86,6 +87,7 @@ def test_restitution_is_found_and_friction_is_not_determined_by_a_central_impact
     assert "not determined by these data" in (out / "calibration.html").read_text()
 
 
+@pytest.mark.full
 def test_a_second_method_gives_the_same_posterior(done, study, tmp_path):
     """The likelihood of runs themselves on a grid of restitution, without an emulator."""
     grid = np.linspace(0.6, 0.8, 21)
@@ -116,6 +118,7 @@ def test_a_second_method_gives_the_same_posterior(done, study, tmp_path):
     assert left_out.mean == pytest.approx(time, rel=0.01)
 
 
+@pytest.mark.full
 def test_the_same_command_opens_what_is_there_and_gives_the_same_numbers(done, study):
     _, out = done
     before = (out / "parameters.csv").read_bytes()
@@ -125,6 +128,7 @@ def test_the_same_command_opens_what_is_there_and_gives_the_same_numbers(done, s
     assert json.loads((out / "calibration.json").read_text())["provenance"]["runs_made"] == 0
 
 
+@pytest.mark.full
 def test_a_quantity_that_is_not_there_costs_one_run_and_is_named(study, tmp_path):
     other = study.parent / "other.toml"
     other.write_text(STUDY.replace("duration_alone", "duraton_alone"))
@@ -143,6 +147,7 @@ def test_a_key_that_the_case_does_not_have_is_refused_before_anything_is_written
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.full
 def test_a_folder_of_another_calibration_is_not_touched(done, study):
     other, text = study.parent / "other.toml", STUDY
     for old, new in (

@@ -42,6 +42,7 @@ def test_a_prior_has_the_quantiles_of_its_distribution(prior, held):
     assert prior.share(prior.at(q)) == pytest.approx(q, abs=1e-9)
 
 
+@pytest.mark.full
 def test_an_emulator_finds_a_straight_line_and_the_scatter_about_it():
     u = filling_points(2, 64, 1)
     exact = emulate(u, a_line(u))
@@ -88,6 +89,7 @@ def test_the_posterior_of_a_straight_line_is_the_normal_distribution_of_the_clos
     assert list(found.determined()) == [True, False]
 
 
+@pytest.mark.full
 def test_two_parameters_of_one_sum_are_found_to_depend_on_each_other():
     u = filling_points(2, 64, 1)
     both = (Prior("a", "uniform", 0.0, 1.0), Prior("b", "uniform", 0.0, 1.0))
@@ -99,6 +101,7 @@ def test_two_parameters_of_one_sum_are_found_to_depend_on_each_other():
     assert sd < 0.03
 
 
+@pytest.mark.full
 def test_an_observation_a_thousand_times_narrower_than_the_prior_is_still_sampled():
     u = filling_points(2, 64, 1)
     seen = [Seen(emulate(u, a_line(u)), 13.0, 0.02), Seen(emulate(u, u[:, 1]), 0.25, 0.001)]
@@ -107,6 +110,7 @@ def test_an_observation_a_thousand_times_narrower_than_the_prior_is_still_sample
     assert found.mean() == pytest.approx([5.0, -0.5], abs=0.01)
 
 
+@pytest.mark.full
 def test_observations_out_of_reach_of_the_priors_are_refused():
     u = filling_points(2, 64, 1)
     line = emulate(u, a_line(u))
@@ -130,6 +134,7 @@ def test_further_points_lie_in_the_posterior_and_are_distinct():
     assert len({tuple(one) for one in again}) == 6
 
 
+@pytest.mark.full
 def test_a_measure_that_was_left_out_is_predicted_as_the_closed_form_has_it():
     """Observed 3 + 2 a = 13 +- 0.8: 1 - a / 2 is -1.5 +- 0.2, and a single run scatters by 0.3 about it."""
     u = np.repeat(filling_points(2, 64, 1), 2, axis=0)
@@ -143,6 +148,7 @@ def test_a_measure_that_was_left_out_is_predicted_as_the_closed_form_has_it():
     assert run_sd == pytest.approx(math.hypot(0.2, 0.3), rel=0.15)
 
 
+@pytest.mark.full
 def test_further_points_tell_more_where_the_posterior_is_than_as_many_of_the_prior():
     """The uncertainty of the emulator over the posterior, after four points of either kind."""
 
@@ -160,6 +166,7 @@ def test_further_points_tell_more_where_the_posterior_is_than_as_many_of_the_pri
     assert left[0] < 0.7 * left[1]
 
 
+@pytest.mark.full
 def test_intervals_hold_made_up_truths_as_often_as_they_say():
     """100 truths on a line with scatter, each observed once; the counts lie within those of chance."""
     u = np.repeat(filling_points(1, 32, 1), 2, axis=0)

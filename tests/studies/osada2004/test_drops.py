@@ -194,6 +194,7 @@ def test_forward_differences_gain_energy_at_ten_steps():
     assert steps.forward(20, "tension", summed=False).max() < 1.0  # beyond pi/(2 zeta), which is 14
 
 
+@pytest.mark.full
 def test_the_runs_of_steps_keep_restitution_at_ten_and_lose_it_at_five(tmp_path):
     campaign = carry_out({name: load(name).tasks(QUICK) for name in ("steps",)}, load, tmp_path)
     assert not campaign.problems

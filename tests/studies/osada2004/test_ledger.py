@@ -84,6 +84,7 @@ def test_a_failed_run_leaves_only_its_part_unjudged(fakes, tmp_path: Path):
     assert "no hop" in (tmp_path / "ledger-quick.html").read_text()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("step", ["judge", "rows", "draw", "measure"])
 def test_an_error_in_the_program_is_reported_logged_and_affects_no_other_claim(fakes, tmp_path: Path, step):
     def wrong(*words):

@@ -88,6 +88,7 @@ def found(plan, slope=38.0, spin=300.0, fast=1.2, flux=1.0, load=1.0):
     return result
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "missed", [{}, {"slope": 31.0}, {"spin": 900.0}, {"fast": 2.0}, {"flux": 1.3}, {"load": 4.0}]
 )

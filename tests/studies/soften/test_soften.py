@@ -171,6 +171,7 @@ def runs(hop, tmp_path_factory):
     return {one.name: made[every.get(one.name, every[""])[0]] for one in MEASURES if one.numbers}
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "entry",
     [one for one in MEASURES if one.numbers and one.name not in ELSEWHERE],

@@ -29,6 +29,8 @@ from sweeping import (
     words,
 )  # fmt: skip
 
+pytestmark = pytest.mark.full
+
 pytest.importorskip("distributed")
 
 

@@ -55,6 +55,7 @@ def environment(place, element):
     }  # fmt: skip
 
 
+@pytest.mark.full
 @needs_bash
 def test_the_scripts_make_the_same_sweep_whatever_names_hold(awkward):
     result = call(*asked(), "--emit", "slurm")
@@ -79,6 +80,7 @@ def test_the_scripts_make_the_same_sweep_whatever_names_hold(awkward):
     assert not list(awkward.parent.glob("harm"))
 
 
+@pytest.mark.full
 @needs_bash
 def test_a_run_at_its_time_limit_is_requeued_and_goes_on_from_its_checkpoint(awkward):
     words = asked(**{"stop.time": "20 s", "build.layers": "4"})
@@ -98,6 +100,7 @@ def test_a_run_at_its_time_limit_is_requeued_and_goes_on_from_its_checkpoint(awk
     assert json.loads((place / "provenance.json").read_text())["status"] == "stopped"
 
 
+@pytest.mark.full
 def test_finished_runs_are_left_out_of_the_array(awkward):
     assert call(*asked(), "-j", 1).exit_code == 0
     shutil.rmtree(next(Path("o'ut $(touch harm)").glob("runs/slope-0.04*")))

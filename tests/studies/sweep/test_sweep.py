@@ -55,6 +55,7 @@ def table(out):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.full
 def test_the_table_holds_every_run_and_every_setting(done):
     result, out = done
     assert result.exit_code == 0, result.output
@@ -70,6 +71,7 @@ def test_the_table_holds_every_run_and_every_setting(done):
     assert all(Path(out / one["run"] / "case.json").is_file() for one in rows if one["run"])
 
 
+@pytest.mark.full
 def test_a_number_of_the_table_is_that_of_the_measure(done):
     _, out = done
     row = next(one for one in table(out) if one["quantity"] == "q_star")
@@ -78,6 +80,7 @@ def test_a_number_of_the_table_is_that_of_the_measure(done):
     assert row["steady"] == str(found.steady)
 
 
+@pytest.mark.full
 def test_the_page_shows_the_table_the_effects_and_leads_to_every_run(done):
     _, out = done
     page = (out / "sweep.html").read_text(encoding="utf-8")
@@ -92,6 +95,7 @@ def test_the_page_shows_the_table_the_effects_and_leads_to_every_run(done):
     assert str(out) not in page
 
 
+@pytest.mark.full
 def test_finished_runs_are_opened_for_more_slopes_and_another_measure(done, bed):
     _, out = done
     before = (out / "sweep.csv").read_bytes()
@@ -124,6 +128,7 @@ def complete(out):
     return [one for one in out.glob("runs/*/provenance.json") if '"complete"' in one.read_text()]
 
 
+@pytest.mark.full
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="kills a process group")
 def test_a_sweep_killed_twice_gives_the_same_table_to_the_last_byte(done, bed, tmp_path):
     out = tmp_path / "out"
@@ -142,6 +147,7 @@ def test_a_sweep_killed_twice_gives_the_same_table_to_the_last_byte(done, bed, t
     assert (out / "sweep.csv").read_bytes() == (done[1] / "sweep.csv").read_bytes()
 
 
+@pytest.mark.full
 def test_a_run_that_fails_costs_no_other(bed, tmp_path):
     out = tmp_path / "out"
     result = call(
@@ -161,6 +167,7 @@ def test_a_run_that_fails_costs_no_other(bed, tmp_path):
     assert not list(out.glob("runs/*/report.html"))
 
 
+@pytest.mark.full
 def test_a_measure_that_fails_costs_no_other_measure(bed, tmp_path):
     out = tmp_path / "out"
     words = ("--seeds", 1, "-m", "transport", "-m", "paths", *SET, "--set", "stop.time=0.2 s", "-j", 1)
@@ -173,6 +180,7 @@ def test_a_measure_that_fails_costs_no_other_measure(bed, tmp_path):
     assert all(one["value"] for one in rows if one["measure"] == "transport")
 
 
+@pytest.mark.full
 def test_a_changed_case_is_named_and_nothing_is_run(done, bed, tmp_path):
     out = shutil.copytree(done[1], tmp_path / "out")
     changed = tmp_path / "bed.toml"
@@ -186,6 +194,7 @@ def test_a_changed_case_is_named_and_nothing_is_run(done, bed, tmp_path):
     assert "stop.time 0.4 is now 1.0" in said(longer)
 
 
+@pytest.mark.full
 def test_a_folder_that_holds_another_sweep_or_something_else_is_refused(done, bed, tmp_path):
     _, out = done
     other = call(bed, "--over", "water.depth=4 cm,8 cm", "--seeds", 2, "-m", "transport", *SET, "-o", out)
@@ -252,6 +261,7 @@ def test_faults_of_several_settings_are_reported_together(bed, tmp_path):
     assert "in 2 settings of 6: slope 0.01, spread 2; slope 99, spread 2" in said(result)
 
 
+@pytest.mark.full
 def test_a_script_gets_the_same_table(done, bed):
     pandas = pytest.importorskip("pandas")
     _, out = done
@@ -270,6 +280,7 @@ def test_a_script_gets_the_same_table(done, bed):
         ryusa.sweep(bed, (), "transport", seeds=0, overrides=SHORT, folder=out)
 
 
+@pytest.mark.full
 def test_a_file_with_a_table_does_what_the_command_does(done, bed):
     _, out = done
     path = Path(bed).parent / "slopes.toml"

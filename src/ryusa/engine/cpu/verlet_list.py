@@ -89,7 +89,7 @@ class BlockLayout(Layout):
             per_m=1.0 / self.m[:n],
             per_inertia=1.0 / self.inertia[:n],
             ids=np.arange(self.n_solid),
-            tracked=self.tracked,
+            tracked=np.array(self.tracked),  # likewise
             n_touching=np.zeros(n, np.int32),
             film=np.zeros((0, 0)),
         )
