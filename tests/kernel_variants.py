@@ -1,7 +1,7 @@
 """The kernels that `make test` compiles, and the hook that keeps its tests to them.
 
-A kernel costs seconds of compilation for each variant (src/ryusa/engine/shared/variant.py), whatever a test
-then does with it. So the quick level has one list of a dozen, which together have every feature of the CPU
+Kernels cost seconds of compilation for each variant (src/ryusa/engine/shared/variant.py), whatever a test
+then does with them. So the quick level has one list of a dozen, which together have every feature of the CPU
 engine, and a test that needs another one belongs to `make test-all`.
 """
 
@@ -47,13 +47,13 @@ def refusal(variant: KernelVariant) -> str:
     )
 
 
-def confined(make_run: Callable[[KernelVariant], Any]) -> Callable[[KernelVariant], Any]:
+def confined(pieces_of: Callable[..., Any]) -> Callable[..., Any]:
     """The maker of kernels, which fails the test that asks for another one than those above."""
 
-    def make(variant: KernelVariant) -> Any:
+    def make(variant: KernelVariant, *given: Any) -> Any:
         if variant not in QUICK:
             pytest.fail(refusal(variant), pytrace=False)
-        return make_run(variant)
+        return pieces_of(variant, *given)
 
     return make
 

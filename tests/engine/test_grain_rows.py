@@ -29,6 +29,6 @@ def test_vec4_and_single_components_give_the_same_bits():
     move_rows(x, v, f, drag, weight, w, torque, inverse, dt, out)
     for i in range(STATES):
         for k in range(4):
-            one = translation_step(x[i, k], v[i, k], f[i, k], drag[i, k], weight[i, k], inverse[i], dt)
+            one = translation_step.entry(x[i, k], v[i, k], f[i, k], drag[i, k], weight[i, k], inverse[i], dt)
             assert (out[i, 0, k], out[i, 1, k]) == one
-            assert out[i, 2, k] == rotation_step(w[i, k], torque[i, k], inverse[i], dt)
+            assert out[i, 2, k] == rotation_step.entry(w[i, k], torque[i, k], inverse[i], dt)
