@@ -53,7 +53,7 @@ def test_a_case_is_checked_without_what_only_runs_and_pictures_need() -> None:
     assert not loaded & {"h5py", "jinja2", "matplotlib", "PIL", "pint", "trimesh", "urllib.request"}
 
 
-@pytest.mark.parametrize("room", ["build", "casefile", "measure", "study"])
+@pytest.mark.parametrize("room", ["build", "casefile", "measure", "studies.sweep", "study"])
 def test_a_room_loads_no_part_of_scipy_before_it_is_used(room: str) -> None:
     code = f"import ryusa.{room}, sys; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
