@@ -71,9 +71,7 @@ $(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
 demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it, write its page
 	$(BIN)/ryusa run src/ryusa/cases/saltation.toml -o $(RUN) --overwrite
 	$(BIN)/ryusa measure $(RUN) saltation --csv $(SHOW)/saltation.csv
-	$(BIN)/ryusa draw $(RUN) tracks -o $(SHOW)/tracks.png
-	$(BIN)/ryusa draw $(RUN) hops -o $(SHOW)/hops.png
-	$(BIN)/ryusa draw $(RUN) contacts -o $(SHOW)/contacts.png
+	$(BIN)/ryusa draw $(RUN) tracks hops contacts -o $(SHOW)
 	$(BIN)/ryusa report $(RUN) --quiet
 	@echo
 	@echo "Pictures, with their numbers beside them: $(SHOW)/"

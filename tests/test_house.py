@@ -15,6 +15,7 @@ LONGEST = 420  # lines; past that a file is two files
 LONGEST_FUNCTION = 80  # lines; past that a function says why it is one
 REASON = "# One function: "
 HEAVY = {"numba", "llvmlite", "h5py", "pint", "pydantic", "matplotlib", "scipy", "vtk", "rich", "typer"}
+SLOW = {f"scipy.{part}" for part in ("fft", "linalg", "optimize", "sparse", "spatial", "special", "stats")}
 MACHINE = re.compile(r"file:/|/(?:home|root|Users|work|opt|mnt|tmp)/[A-Za-z0-9_.-]")
 
 
@@ -39,6 +40,24 @@ def imported_by(code: str) -> set[str]:
 
 def test_importing_ryusa_loads_nothing_heavy() -> None:
     assert not imported_by("import ryusa") & (HEAVY | {"numpy"})
+
+
+def test_a_case_is_checked_without_what_only_runs_and_pictures_need() -> None:
+    case = SOURCE / "cases" / "saltation.toml"
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "ryusa", "check", str(case)],
+        check=True, capture_output=True, text=True,
+    )  # fmt: skip
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "ryusa.casefile.read" in loaded
+    assert not loaded & {"h5py", "jinja2", "matplotlib", "PIL", "pint", "trimesh", "urllib.request"}
+
+
+@pytest.mark.parametrize("room", ["build", "casefile", "measure", "studies.sweep", "study"])
+def test_a_room_loads_no_part_of_scipy_before_it_is_used(room: str) -> None:
+    code = f"import ryusa.{room}, sys; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert not set(done.stdout.split()) & SLOW
 
 
 def test_every_public_name_of_ryusa_is_there_and_documented() -> None:

@@ -74,20 +74,21 @@ def _plain(text: str) -> str:
 
 
 @cache
-def _tree(file: str) -> tuple[ast.Module, list[str]]:
+def _classes(file: str) -> tuple[list[ast.ClassDef], list[str]]:
+    """Classes of a file, and its lines."""
     text = Path(file).read_text(encoding="utf-8")
-    return ast.parse(text), text.splitlines()
+    return [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ClassDef)], text.splitlines()
 
 
 def comments_of(kind: type) -> dict[str, str]:
     """Comment beside each field of a dataclass or member of an enum, as its source has it."""
     try:
-        tree, lines = _tree(inspect.getsourcefile(kind) or "")
+        classes, lines = _classes(inspect.getsourcefile(kind) or "")
     except (OSError, TypeError):
         return {}
     found: dict[str, str] = {}
-    for node in ast.walk(tree):
-        if not (isinstance(node, ast.ClassDef) and node.name == kind.__name__):
+    for node in classes:
+        if node.name != kind.__name__:
             continue
         for field in node.body:
             name = _field_name(field)
@@ -159,6 +160,14 @@ def without_page(app: Any, env: Any, node: Any, text: Any) -> Any:
 
 def setup(app: Any) -> None:
     """Connect to Sphinx, ahead of numpydoc (whose priority is 500)."""
+    from jinja2 import FileSystemLoader
+    from jinja2.sandbox import SandboxedEnvironment
+    from numpydoc import docscrape_sphinx
+
+    # numpydoc compiles its one template anew for each docstring; here it is compiled once
+    folder = Path(docscrape_sphinx.__file__).parent / "templates"
+    templates = SandboxedEnvironment(loader=FileSystemLoader(folder))
+    docscrape_sphinx.SandboxedEnvironment = lambda loader: templates
     app.connect("autodoc-process-docstring", rewrite, priority=100)
     app.connect("autodoc-process-signature", signature)
     app.connect("missing-reference", without_page)

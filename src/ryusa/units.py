@@ -30,6 +30,7 @@ _NAMES = {  # quantity that an SI unit measures, for messages
 _SI_UNITS = (*_NAMES, "kg/s", "Pa", "J", "m2")
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
 _NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))
+_JOULE, _BIT = (("gram", 1), ("meter", 2), ("second", -2)), (("bit", 1),)
 COMMON = {  # common units, because Pint takes long to read its definitions; a test compares the two
     "%": (0.01, ()),
     "m": (1.0, _METRE),
@@ -49,8 +50,17 @@ COMMON = {  # common units, because Pint takes long to read its definitions; a t
     "Pa": (1.0, _PASCAL),
     "kPa": (1e3, _PASCAL),
     "MPa": (1e6, _PASCAL),
+    "GPa": (1e9, _PASCAL),
+    "J": (1.0, _JOULE),
     "rad": (1.0, _RADIAN),
     "deg": (math.pi / 180.0, _RADIAN),
+    "Hz": (1.0, (("second", -1),)),
+    "rpm": (2.0 * math.pi / 60.0, (("radian", 1), ("second", -1))),
+    "byte": (8.0, _BIT),
+    "B": (8.0, _BIT),
+    "kB": (8e3, _BIT),
+    "MB": (8e6, _BIT),
+    "GB": (8e9, _BIT),
 }
 
 

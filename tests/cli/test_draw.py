@@ -60,6 +60,35 @@ def test_a_run_with_pictures_is_opened_inspected_checked_and_resumed_as_before(f
     assert (folder / "pictures" / "energy.png").exists()
 
 
+def test_several_pictures_are_the_same_files_as_one_at_a_time(folder):
+    for name in ("energy", "grains"):
+        assert call("draw", folder, name).exit_code == 0
+    result = call("draw", folder, "energy", "grains", "energy", "-o", "shown")
+    assert result.exit_code == 0, result.output
+    assert sorted(one.name for one in Path("shown").iterdir()) == [
+        "energy.csv", "energy.png", "grains.csv", "grains.png",
+    ]  # fmt: skip
+    for one in Path("shown").iterdir():
+        assert one.read_bytes() == (folder / "pictures" / one.name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("energy", "grain"), "grains"),
+        (("energy", "grains", "--colour", "spin"), "--colour"),
+        (("energy", "grains", "--csv", "all.csv"), "--csv"),
+        (("energy", "grains", "-o", "all.png"), "--output"),
+        (("energy", "-o", "shown"), "--output"),
+    ],
+)
+def test_what_one_of_several_pictures_does_not_take_is_said_before_any_is_drawn(folder, words, named):
+    result = call("draw", folder, *words)
+    assert result.exit_code == 2
+    assert named in result.output
+    assert not (folder / "pictures").exists() and list(Path().iterdir()) == []
+
+
 def test_a_large_table_is_written_on_request_only(folder, monkeypatch):
     monkeypatch.setattr(command, "MOST", 50.0)
     result = call("draw", folder, "energy")

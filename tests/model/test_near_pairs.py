@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ryusa.model.near_pairs import near_pairs
+from ryusa.model.near_pairs import near_free_pairs, near_pairs
 
 
 def close(x, d, box, gap):
@@ -36,3 +36,17 @@ def test_fine_grains_are_not_held_against_all_within_a_coarse_one():
     d = np.ones(len(x))
     x, d = np.vstack([x, [[40.0, 10.0, 10.0]]]), np.append(d, 20.0)
     assert len(near_pairs(x, d, np.zeros(3))) < 10 * len(d)
+
+
+@pytest.mark.parametrize("n", [40, 400])  # compared each with each, and by a tree
+@pytest.mark.parametrize("box", [(0.0, 0.0, 0.0), (3.0, 2.5, 0.0)])
+def test_pairs_of_free_grains_are_those_of_all_pairs_that_touch(n, box):
+    rng = np.random.default_rng(5)
+    x, d, box = rng.uniform(0.0, 2.5, (n, 3)), rng.uniform(0.3, 0.6, n), np.array(box)
+    free = n // 4
+    pairs = [tuple(one) for one in near_free_pairs(x, d, box, free).tolist()]
+    assert len(pairs) == len(set(pairs))
+    assert all(i < j and i < free for i, j in pairs)
+    asked = {(i, j) for i, j in close(x, d, box, 0.0) if i < free}
+    assert len(asked) > 5
+    assert asked <= set(pairs)

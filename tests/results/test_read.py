@@ -6,7 +6,7 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Term
-from ryusa.results import Results
+from ryusa.results import Results, lazy
 from ryusa.results.schema import BEFORE_FILMS, TALLY
 
 N = 23
@@ -168,3 +168,17 @@ def test_a_run_without_its_index_is_still_readable(folder: Path) -> None:
     (folder / "summary.json").unlink()
     assert len(Results.open(folder).frames) == N
     assert Results.open(folder).summary == {}
+
+
+def test_frames_read_one_by_one_in_any_order_are_those_read_at_once(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = [np.asarray(getattr(Results.open(folder).frames, name)) for name in ("x", "v", "image")]
+    order = [*range(len(whole[0])), *reversed(range(len(whole[0])))]
+    for ahead in (0, 200, lazy.AHEAD):
+        monkeypatch.setattr(lazy, "AHEAD", ahead)
+        frames = Results.open(folder).frames
+        for k in order:
+            for name, every in zip(("x", "v", "image"), whole, strict=True):
+                one = getattr(frames, name)[k]
+                assert np.array_equal(one, every[k]) and not one.flags.writeable

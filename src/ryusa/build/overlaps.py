@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ryusa.build.placement import Placement, unit_normal
 from ryusa.errors import CaseError
-from ryusa.model.near_pairs import near_pairs
+from ryusa.model.near_pairs import near_free_pairs
 
 TOLERANCE = 1.0e-9  # of the smaller diameter
 
@@ -54,8 +54,7 @@ def refuse_overlaps(placement: Placement, key: str, plane: bool = False) -> None
         if sides[axis] > 0.0:
             x[:, axis] = np.mod(x[:, axis], sides[axis])
             x[x[:, axis] >= sides[axis], axis] = 0.0
-    pairs = near_pairs(x, d, sides)
-    pairs = pairs[(pairs[:, 0] < n) | (pairs[:, 1] < n)]
+    pairs = near_free_pairs(x, d, sides, n)
     if not len(pairs):
         return
     i, j = pairs[:, 0], pairs[:, 1]

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from ryusa.build.change import change, replay
 from ryusa.build.servo import area_along
@@ -250,6 +249,8 @@ def _taken(scene: Scene, places: Floats, d: float, t: float) -> dict[str, Bools]
                 found[f"the plane '{name}'"] = away < 0.5 * d
     stones = scene.fixed_active
     if stones.any():
+        from scipy.spatial import KDTree
+
         tree = KDTree(scene.x_fixed.reshape(-1, 3)[stones])
         near = tree.query(places)[0]
         found["the bed"] = near < 0.5 * (d + float(scene.d_fixed[stones].min()))

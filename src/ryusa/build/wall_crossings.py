@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from ryusa.build.wall_tracks import SidePoints, WallTrack
 from ryusa.model.arrays import Bools, Floats
@@ -109,6 +108,8 @@ def _near(p: Floats, q: Floats, met: Floats, middle: Floats) -> tuple[Ints, Ints
             np.flatnonzero(np.all((least <= high[f]) & (most >= low[f]), axis=1)) for f in range(len(met))
         ]
     else:
+        from scipy.spatial import KDTree
+
         reach = np.linalg.norm(met - middle[:, None], axis=2).max(axis=1)
         reach += 0.5 * float(np.linalg.norm(q - p, axis=1).max())
         lists = KDTree(0.5 * (p + q)).query_ball_point(middle, reach)

@@ -7,8 +7,6 @@ from itertools import chain, pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from ryusa.build.overlaps import TOLERANCE
 from ryusa.build.overlaps import name as name_of
@@ -180,6 +178,9 @@ def surfaces(face: Floats, kind: Ints, period: tuple[float, float] = (math.inf, 
     >>> surfaces(flat.face, flat.kind).tolist()
     [0, 0]
     """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     flat = np.flatnonzero(kind == FaceKind.TRIANGLE)
     links = _smooth_links(face[flat], period)
     graph = coo_matrix((np.ones(len(links)), (flat[links[:, 0]], flat[links[:, 1]])), shape=(len(kind),) * 2)
@@ -292,10 +293,10 @@ def _servo(wall: WallSection, made: SolidWall) -> Servo | None:
 
 def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall], key: str) -> None:
     """Raise a `CaseError` that names a first grain and the wall that it overlaps most."""
-    from scipy.spatial import KDTree
-
     if placement.allow_overlap or not walls or not len(placement.d):
         return
+    from scipy.spatial import KDTree
+
     tree, largest = KDTree(placement.x), 0.5 * float(placement.d.max())
     for wall in walls:
         low, high = face_boxes(wall.face, wall.kind)

@@ -1,5 +1,6 @@
 """The command line; every command is a thin layer over a call that a script can make."""
 
+import gc
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -18,6 +19,7 @@ _FAMILIES = (
     "ryusa.cli.design", "ryusa.cli.sweep", "ryusa.cli.soften", "ryusa.cli.calibrate",
     "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.doctor",
 )  # fmt: skip
+OBJECTS = 20_000  # made between two searches for garbage; loading modules makes many, and all of them stay
 INTERRUPTED = 130  # exit code after Ctrl-C
 
 
@@ -71,4 +73,5 @@ for _family in _FAMILIES:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; `arguments` default to those of the process."""
+    gc.set_threshold(OBJECTS)
     app(args=sys.argv[1:] if arguments is None else list(arguments), prog_name="ryusa")

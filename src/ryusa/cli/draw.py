@@ -1,4 +1,4 @@
-"""`ryusa draw`: pictures of a run folder, their numbers beside them."""
+"""`ryusa draw`: pictures of a run folder, the numbers of each beside it."""
 
 from itertools import islice
 from pathlib import Path
@@ -25,6 +25,7 @@ def _length(name: str, value: str, results: "Results") -> float:
 
 
 MOST = 1.0e6  # bytes of a CSV that is written unasked
+SUFFIXES = (".png", ".svg", ".pdf")
 SAMPLE = 500  # rows from which its size is estimated
 COLOURS = ("speed", "spin", "none")
 CHECKS: dict[str, chosen.Check] = {
@@ -45,6 +46,24 @@ CHECKS: dict[str, chosen.Check] = {
 }
 
 
+Output = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="PATH",
+        help="A PNG, SVG or PDF file; for several pictures a folder, which gets a PNG of each. Default "
+        "RUN/pictures/WHAT.png.",
+    ),
+]
+Csv = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Write the numbers in the picture, whatever their size; default beside the picture, if they "
+        "take less than 1 MB. Those of several pictures always go there.",
+    ),
+]
 Bed = Annotated[str, of_row("bed", PICTURES)]
 Dam = Annotated[str | None, of_row("dam", PICTURES)]
 Reach = Annotated[str | None, of_row("reach", PICTURES)]
@@ -72,21 +91,11 @@ def register(app: typer.Typer) -> None:
 def draw(
     context: typer.Context,
     run: Annotated[Path, typer.Argument(help="A run folder.")],
-    what: Annotated[str, typer.Argument(help=f"One of {', '.join(one.name for one in PICTURES)}.")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="PNG, SVG or PDF; default RUN/pictures/WHAT.png."
-        ),
-    ] = None,
-    csv: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Write the numbers in the picture, whatever their size; default beside the picture, if they "
-            "take less than 1 MB.",
-        ),
-    ] = None,
+    what: Annotated[
+        list[str], typer.Argument(help=f"One or more of {', '.join(one.name for one in PICTURES)}.")
+    ],
+    output: Output = None,
+    csv: Csv = None,
     grain: Annotated[
         list[int] | None,
         typer.Option(
@@ -136,17 +145,32 @@ def draw(
     quantity: Quantity = None,
     wall: Wall = None,
 ) -> None:
-    """Draw a picture of a run, and write the numbers in it as CSV beside it.
+    """Draw pictures of a run, and write the numbers in each as CSV beside it.
 
-    An option that a picture does not take is an error.
+    An option that one of them does not take is an error, and nothing is drawn.
     """
     results = open_run(run)
-    entry = entry_of(what, PICTURES, "draw")
-    figure, rows = _drawn(entry, results, keywords(context, entry, results, CHECKS))
-    path = _beside(run, what) if output is None else output
-    if path.suffix not in {".png", ".svg", ".pdf"}:
-        raise CaseError("--output", str(path), "must end in .png, .svg or .pdf")
-    _write(figure, rows, path, csv)
+    entries = [entry_of(one, PICTURES, "draw") for one in dict.fromkeys(what)]
+    if csv is not None and len(entries) > 1:
+        raise CaseError("--csv", str(csv), "names one file, for the numbers of one picture")
+    paths = [_place(run, entry.name, output, alone=len(entries) == 1) for entry in entries]
+    given = [keywords(context, entry, results, CHECKS) for entry in entries]
+    for entry, path, options in zip(entries, paths, given, strict=True):
+        figure, rows = _drawn(entry, results, options)
+        _write(figure, rows, path, csv)
+
+
+def _place(run: Path, what: str, output: Path | None, alone: bool) -> Path:
+    """File of a picture: `output` where it is drawn alone, else within that folder or that of the run."""
+    if output is None:
+        return _beside(run, what)
+    if not alone:
+        if output.suffix in SUFFIXES or output.is_file():
+            raise CaseError("--output", str(output), "must be a folder, for several pictures are drawn")
+        return output / f"{what}.png"
+    if output.suffix not in SUFFIXES:
+        raise CaseError("--output", str(output), "must end in .png, .svg or .pdf")
+    return output
 
 
 def _write(figure: "Figure", rows: list[dict[str, object]], path: Path, csv: Path | None) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,9 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.model import Scene
 from ryusa.model.arrays import Bools, Floats
-from ryusa.results import Results
+
+if TYPE_CHECKING:
+    from ryusa.results import Results
 
 UNITS = {
     **dict.fromkeys(("x", "y", "z", "d"), "m"),
@@ -85,7 +88,7 @@ class GrainTable:
         return np.stack([self.column(name) for name in names], axis=1)
 
 
-def nearest_frame(run: Results, t: float) -> int:
+def nearest_frame(run: "Results", t: float) -> int:
     """Number of the frame nearest to a time [s].
 
     Raises
@@ -103,7 +106,7 @@ def nearest_frame(run: Results, t: float) -> int:
     return int(np.abs(times - t).argmin())
 
 
-def table_of_frame(run: Results, k: int) -> GrainTable:
+def table_of_frame(run: "Results", k: int) -> GrainTable:
     """Free and fixed grains of frame k of a run, inside the period.
 
     Notes
@@ -155,7 +158,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
 
 
 def _clumps(
-    run: Results, k: int, scene: Scene, here: NDArray[np.int64], n_fixed: int
+    run: "Results", k: int, scene: Scene, here: NDArray[np.int64], n_fixed: int
 ) -> tuple[NDArray[np.int64] | None, Floats | None]:
     """Clump and orientation of the free spheres `here` at frame k, then of fixed grains."""
     if scene.bodies is None or run.bodies is None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from xml.parsers import expat
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +64,8 @@ def vtu_file(table: GrainTable) -> bytes:
 
 def pvd_file(frames: list[tuple[float, str]]) -> bytes:
     """List of files with their times [s]."""
+    from xml.sax.saxutils import quoteattr  # it loads what opens addresses of the web
+
     lines = [
         '<?xml version="1.0"?>',
         '<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">',

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import CensoredData, ecdf
 
 from ryusa.errors import CaseError, ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
@@ -104,6 +103,8 @@ class Stays:
 
     def _survival(self) -> tuple[Floats, Floats]:
         """Numbers of frames, and the share of the stays that have more of them."""
+        from scipy.stats import CensoredData, ecdf  # the import takes half a second
+
         found = ecdf(
             CensoredData(uncensored=1.0 * self.frames[~self.cut], right=self.frames[self.cut] - HALF)
         ).sf

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, crest_of
@@ -217,6 +216,8 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
     weights : along the bed and normal to it, less what fixed grains and planes carry above, (2, n_layer) [N].
     bed : force of fixed grains and planes on the grains [N], (3,).
     """
+    from scipy.special import ndtr
+
     scene = scene_at(run, float(run.frames.t[k]))
     x = np.asarray(run.frames.x[k], dtype=np.float64)
     v = np.asarray(run.frames.v[k], dtype=np.float64)
@@ -246,6 +247,8 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
 
 def _line(z: Floats, top: Floats, rise: Floats, length: float) -> Floats:
     """Mean of the Gaussian over straight lines that end at `top` and rise by `rise` [1/m], (n, n_layer)."""
+    from scipy.special import ndtr
+
     flat = np.abs(rise) < FLAT * length
     steep = np.where(flat, FLAT * length, rise)[:, None]
     level = (top - 0.5 * np.where(flat, rise, 0.0))[:, None]

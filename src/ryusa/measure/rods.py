@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
@@ -287,6 +285,9 @@ def _clusters(pairs: Ints, n: int) -> Iterator[Ints]:
     """Give the grains of every cluster of bound pairs among n grains."""
     if not len(pairs):
         return
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     _, label = connected_components(links, directed=False)
     for one in np.unique(label[pairs[:, 0]]):

@@ -5,8 +5,6 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import OptimizeWarning, curve_fit
-from scipy.special import erfc
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
@@ -75,6 +73,8 @@ def zone(r: Floats, centre: float, width: float, share: float) -> Floats:
     >>> [float(one) for one in zone(np.array([0.0, 1.0, 2.0]), 1.0, 0.1, 1.0).round(6)]
     [1.0, 0.5, 0.0]
     """
+    from scipy.special import erfc
+
     return np.asarray(0.5 * share * erfc((r - centre) / width))
 
 
@@ -200,6 +200,8 @@ def _rings(run: Run, k: int, axis: Floats, surface: float, low: float, n_layer: 
 
 def _fit(r: Floats, above: Floats, below: Floats, r_s: float, d: float) -> Floats:
     """Centre [m], width [m] and share of an error function, rings weighted by mass; or nan."""
+    from scipy.optimize import OptimizeWarning, curve_fit
+
     inertia = below.sum(axis=0)
     known = inertia > 0.0
     value = np.divide(above.sum(axis=0), inertia, np.zeros(len(r)), where=known)

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.fft import dct
-from scipy.special import fdtri, stdtrit
 
 from ryusa.measure.steadiness import LIMIT, PARTS, WAVES, block_means, compare_quarters, merged, truncation
 
@@ -143,6 +141,8 @@ def standard_error(series: Sequence[ArrayLike]) -> StandardError:
     >>> standard_error([[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]]).error
     0.0
     """
+    from scipy.special import fdtri
+
     arrays = [np.asarray(one, dtype=np.float64) for one in series]
     arrays = [one for one in arrays if len(one)]
     n, n_series = sum(len(one) for one in arrays), len(arrays)
@@ -173,6 +173,8 @@ def standard_errors(columns: ArrayLike) -> Floats:
     >>> standard_errors([[1.0, 0.0], [1.0, 1.0]]).round(3)
     array([0.   , 0.919])
     """
+    from scipy.special import stdtrit
+
     rows = np.asarray(columns, dtype=np.float64)
     n, n_column = rows.shape
     if n < 2 or n_column == 0:
@@ -286,6 +288,8 @@ def _noise(blocks: Floats) -> tuple[Floats, Floats, Ints]:
     ----------
     blocks : samples or block means in order of time, shape (n, n_column), n >= 2.
     """
+    from scipy.fft import dct
+
     n, n_column = blocks.shape
     waves: Floats = np.asarray(dct(blocks - blocks.mean(axis=0), axis=0, norm="ortho"))[1:]
     summed, column = np.cumsum(waves**2, axis=0), np.arange(n_column)
@@ -314,4 +318,6 @@ def _between(arrays: list[Floats]) -> float:
 
 def _widened(square: float, independent: float, freedom: int) -> StandardError:
     """From the square of a standard error with so many degrees of freedom."""
+    from scipy.special import stdtrit
+
     return StandardError(math.sqrt(square) * float(stdtrit(freedom, ONE_SIGMA)), independent, freedom)

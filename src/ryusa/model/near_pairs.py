@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 from ryusa.model.arrays import Floats
 
 Pairs = NDArray[np.int64]
+ROUND_OFF = 1.0e-12
+FEW = 4096  # pairs that are compared one by one sooner than a tree is built
 
 
 def near_pairs(x: Floats, d: Floats, box: Floats, share: float = 0.0, gap: float = 0.0) -> Pairs:
@@ -28,10 +30,10 @@ def near_pairs(x: Floats, d: Floats, box: Floats, share: float = 0.0, gap: float
     from each other. Grains are therefore searched by halvings of the largest diameter, each class among
     itself and beside each larger one: what is found are a few pairs a grain, however wide the sizes are.
     """
-    from scipy.spatial import KDTree  # the import takes a tenth of a second
-
     if len(d) < 2:
         return np.zeros((0, 2), np.int64)
+    from scipy.spatial import KDTree  # the import takes a tenth of a second
+
     widest, wider = float(d.max()), 1.0 + share
     level = np.floor(np.log2(widest / d)).astype(np.int64)
     if not level.any():
@@ -47,3 +49,23 @@ def near_pairs(x: Floats, d: Floats, box: Floats, share: float = 0.0, gap: float
             beside = tree.sparse_distance_matrix(trees[b], reach, output_type="ndarray")
             found.append(np.stack([mine[beside["i"]], classes[b][beside["j"]]], axis=1))
     return np.sort(np.concatenate(found), axis=1)
+
+
+def near_free_pairs(x: Floats, d: Floats, box: Floats, free: int) -> Pairs:
+    """The pairs of `near_pairs` of which at least one grain is among the first `free`, in any order.
+
+    A few grains over a small bed are compared each with each, for which scipy need not be loaded.
+
+    >>> x, d = np.array([[0.0, 0.0, 0.0], [0.9, 0.0, 0.0], [9.5, 0.0, 0.0]]), np.ones(3)
+    >>> near_free_pairs(x, d, np.array([10.0, 0.0, 0.0]), 1).tolist()
+    [[0, 1], [0, 2]]
+    """
+    if free * len(d) > FEW:
+        pairs = near_pairs(x, d, box)
+        return pairs[(pairs < free).any(axis=1)]
+    apart = x[:free, None] - x
+    round_box = np.where(box > 0.0, box, np.inf)
+    apart -= np.where(box > 0.0, box, 0.0) * np.round(apart / round_box)
+    reach = 0.5 * (d[:free, None] + d) * (1.0 + ROUND_OFF)
+    near = np.triu((apart**2).sum(axis=2) <= reach**2, k=1)
+    return np.argwhere(near)

@@ -63,10 +63,17 @@ def residual_of(imbalance: Any, held: Mapping[str, Any], work: Mapping[Term, Any
     change = sum(held.values()) - work.get(Term.START, 0.0) - work.get(Term.SWITCH, 0.0)
     sizes = [change, *(one for name, one in held.items() if name != "potential")]
     sizes += [work[term] for term in SIZES if term in work]
-    largest = max(float(np.abs(one).max(initial=0.0)) for one in map(np.asarray, sizes))
+    largest = max(map(_largest, sizes))
     if math.isnan(largest):
         return largest
-    return float(np.abs(np.asarray(imbalance)).max(initial=0.0)) / largest if largest > 0.0 else 0.0
+    return _largest(imbalance) / largest if largest > 0.0 else 0.0
+
+
+def _largest(size: Any) -> float:
+    """Largest magnitude of a number or of an array, 0 of an empty one."""
+    if isinstance(size, float):  # of one moment; numpy would take longer than a step of the grains
+        return float(abs(size))
+    return float(np.abs(np.asarray(size)).max(initial=0.0))
 
 
 @dataclass(frozen=True)

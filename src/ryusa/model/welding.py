@@ -3,8 +3,6 @@
 import math
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from ryusa.model.arrays import Floats
 from ryusa.model.walls import Ints
@@ -84,6 +82,9 @@ def rims(corners: Floats) -> tuple[int, Floats, int]:
     alone = first[times == 1]
     if not len(alone):
         return 0, np.zeros(0), int((times > 2).sum())
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     n, triangle, k = len(corners), alone % len(corners), alone // len(corners)
     ends = np.stack([number[triangle, k], number[triangle, (k + 1) % 3]], axis=1)
     known, at = np.unique(ends, return_inverse=True)

@@ -265,7 +265,7 @@ def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
     else:
         figure, _ = called(entry)(results)
     held = io.BytesIO()
-    figure.savefig(held, format="png", dpi=DPI)
+    figure.savefig(held, format="png", dpi=DPI, pil_kwargs={"compress_level": 0})  # packed by `embedded`
     held.seek(0)
     wide = float(figure.get_size_inches()[0]) > _ONE_COLUMN
     found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), wide))

@@ -1,5 +1,6 @@
 """Frames of one quantity over all parts of a run, read from the disk when they are indexed."""
 
+import math
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
@@ -14,6 +15,8 @@ from ryusa.model import EVENT, PASSAGE, with_momentum
 from ryusa.model.walls import TOUCHED
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
+
+AHEAD = 1 << 16  # bytes of small frames that are read together, for most are read one after another
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,8 @@ class LazyFrames:
         self.dtype: np.dtype[Any] = dtype
         self._parts, self._name, self._lift = parts, name, lift
         self._starts = [part.first for part in parts]
+        self._held: tuple[int, NDArray[Any]] = (0, np.zeros(0, dtype))  # frames read ahead, from which on
+        self._together = AHEAD // max(dtype.itemsize * math.prod(self.shape[1:]), 1)
 
     @property
     def ndim(self) -> int:
@@ -123,7 +128,7 @@ class LazyFrames:
         frames, rest = keys[0], keys[1:]
         grains, rest = self._grains(rest)
         if isinstance(frames, int | np.integer):
-            found = self._read(range(len(self))[int(frames)], 1, grains)[0]
+            found = self._one(range(len(self))[int(frames)], grains)
             found = found[rest] if rest else found
         else:
             found = self._frames(frames, grains)
@@ -166,6 +171,22 @@ class LazyFrames:
         if high - low <= 2 * len(chosen):  # most of the range: one read is faster than many small ones
             return self._read(low, high - low, grains)[chosen - low]
         return np.concatenate([self._read(int(k), 1, grains) for k in chosen])
+
+    def _one(self, k: int, grains: Any) -> NDArray[Any]:
+        """Frame k; where frames are small, with its neighbours in the same part, which are kept."""
+        if self._together < 2 or grains != slice(None):
+            return self._read(k, 1, grains)[0]
+        begin, held = self._held
+        if not begin <= k < begin + len(held):
+            part = self._parts[bisect_right(self._starts, k) - 1]
+            begin = max(part.first, k - k % self._together)
+            end = min(part.first + part.n_frame, k - k % self._together + self._together)
+            try:
+                held = self._read(begin, end - begin, grains)
+            except ResultsError:  # damage beside it
+                return self._read(k, 1, grains)[0]
+            self._held = (begin, held)
+        return held[k - begin]
 
     def _read(self, begin: int, count: int, grains: Any) -> NDArray[Any]:
         """Read frames begin to begin + count - 1, part by part."""

@@ -1,12 +1,14 @@
 """Pairs in touch or nearly so at a frame, from positions alone."""
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.model import Scene
-from ryusa.model.near_pairs import near_pairs
+from ryusa.model.near_pairs import Pairs, near_free_pairs, near_pairs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -26,6 +28,18 @@ def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Int
     -------
     i, j : i is a free grain; j is a free grain, a fixed grain or a plane, with the ids of the scene.
     """
+    return _touching(x, scene, partial(_near, gap=gap), gap)
+
+
+def _near(x: Floats, d: Floats, box: Floats, free: int, gap: float) -> Pairs:
+    pairs = near_pairs(x, d, box, share=gap)
+    return pairs[(pairs < free).any(axis=1)]
+
+
+def _touching(
+    x: Floats, scene: Scene, near_of: Callable[[Floats, Floats, Floats, int], Pairs], gap: float = 0.0
+) -> tuple[Ints, Ints]:
+    """As `touching_pairs`; `near_of` gives pairs that may be near, one of them free, and i < j."""
     n, there = scene.n_grain, np.flatnonzero(scene.fixed_active)
     if n == 0:
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
@@ -39,8 +53,7 @@ def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Int
     for axis in np.flatnonzero(box):
         every[:, axis] %= box[axis]
         every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
-    pairs = near_pairs(every, d, box, share=gap)
-    i, j = pairs[(pairs < len(here)).any(axis=1)].T  # at least one of the two is free, and i < j
+    i, j = near_of(every, d, box, len(here)).T
     way = every[j] - every[i]
     way -= np.where(box > 0.0, box * np.round(way / np.where(box > 0.0, box, 1.0)), 0.0)
     near = (way**2).sum(axis=1) < (0.5 * (1.0 + gap) * (d[i] + d[j])) ** 2
@@ -59,6 +72,6 @@ def contacts_per_grain(x: Floats, scene: Scene) -> Ints:
     ----------
     x, scene : as in `touching_pairs`.
     """
-    i, j = touching_pairs(x, scene)
+    i, j = _touching(x, scene, near_free_pairs)
     n = scene.n_grain
     return np.bincount(i, minlength=n) + np.bincount(j[j < n], minlength=n)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import product
 
-from scipy.stats import qmc
-
 BLOCK = 16  # points of a hypercube
 
 
@@ -109,6 +107,8 @@ class Design:
 @cache
 def _points(factors: int, block: int) -> tuple[tuple[float, ...], ...]:
     """Points of one block in the unit cube."""
+    from scipy.stats import qmc
+
     cube = qmc.LatinHypercube(factors, rng=block + 1, scramble=False, optimization="random-cd")
     return tuple(tuple(float(u) for u in one) for one in cube.random(BLOCK))
 

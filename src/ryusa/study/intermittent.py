@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
 
 from ryusa.model.scene import Floats
 from ryusa.study.interval import CONFIDENCE, Interval, not_negative, over_seeds, pseudo_values
@@ -31,6 +30,8 @@ def share_over_runs(shares: Sequence[float], confidence: float = CONFIDENCE) -> 
     >>> found.value, round(found.low, 2), found.high
     (1.0, 0.46, 1.0)
     """
+    from scipy import stats
+
     p = np.asarray(shares, dtype=np.float64)
     n, mean = len(p), float(np.mean(p))
     if n == 1:

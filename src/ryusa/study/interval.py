@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from scipy import stats
 
 CONFIDENCE = 0.95
 Item = TypeVar("Item")
@@ -77,6 +76,8 @@ def over_seeds(
     >>> str(over_seeds([1.0, 2.0, 3.0], "m"))
     '2 m (-0.484 to 4.48)'
     """
+    from scipy import stats
+
     numbers = np.asarray(values, dtype=np.float64)
     n = len(numbers)
     if n == 0 or not np.all(np.isfinite(numbers)):
@@ -212,6 +213,8 @@ def pool_alike(groups: Sequence[Sequence[float]]) -> Pooled | None:
     >>> pool_alike([[0.0, 90.0, 50.0], [0.1, 0.2, 0.1]]) is None
     True
     """
+    from scipy import stats
+
     if not np.isfinite(groups).all():
         return None
     spread = [float(np.std(one)) for one in groups]

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-from scipy import stats
 
 from ryusa.study.interval import CONFIDENCE
 
@@ -81,6 +80,8 @@ def robustness(held: Sequence[bool | None]) -> Robustness:
     >>> found.holds, found.of, found.undecided, round(found.low, 2), round(found.high, 2)
     (2, 3, 1, 0.21, 0.94)
     """
+    from scipy import stats
+
     holds, of = held.count(True), len(held) - held.count(None)
     if of == 0:
         return Robustness(0, 0, len(held), 0.0, 1.0)
@@ -157,6 +158,8 @@ def deciding(
     the finding holds are predicted from the first half alone, and the second half confirms them: it holds
     there more often than elsewhere by Fisher's test, one-sided, at 5 %.
     """
+    from scipy import stats
+
     for one in effects(held, readings):
         if not one.significant:
             return None
@@ -204,6 +207,8 @@ def _within(
 
 def _probability(counts: np.ndarray) -> float:
     """Probability of a table of values against holds and fails at least as uneven, both margins kept."""
+    from scipy import stats
+
     chance = stats.PermutationMethod(n_resamples=RESAMPLES, rng=np.random.default_rng(1))
     tested: Any = stats.fisher_exact(counts, method=None if len(counts) == 2 else chance)
     return float(tested.pvalue)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from scipy import stats
 
 from ryusa.casefile.precision import ErrorLimit
 from ryusa.studies.soften.extrapolate import EXPONENT, Bracket, Extrapolation, extrapolation
@@ -307,6 +306,8 @@ def _with_remarks(found: Softening) -> Softening:
     ]
     values = [one.values for one in found.runs if one.good]
     if found.fit is not None:
+        from scipy import stats
+
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # no scatter at all at one of the stiffnesses
             chance = float(stats.bartlett(*values).pvalue)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.stats import qmc
 
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
@@ -192,6 +191,8 @@ def _sampled(kind: str, axes: tuple[SweepAxis, ...], points: int | None, seed: i
         raise CaseError("points", points, f"must be 1 to {MOST:,}")
     if not 0 <= seed < 2**63:
         raise CaseError("design_seed", seed, "must be 0 or more")
+    from scipy.stats import qmc  # half a second, in each process of a sweep
+
     rng = np.random.default_rng(seed)
     if kind == SOBOL:
         power = math.log2(points)
