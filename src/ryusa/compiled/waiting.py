@@ -92,7 +92,7 @@ def done() -> Done:
 
 
 def left() -> float:
-    """About how much wall time [s] compiling takes yet; 0 where nothing is known, or more than that is over."""
+    """About how much wall time [s] compiling takes yet; 0 where it takes longer than was expected."""
     stack, plan = list(_now.open), dict(_now.left)
     scale = (_now.took + _UNSURE) / (_now.expected + _UNSURE)
     total = scale * sum(seconds for key, seconds in plan.items() if key not in {one.key for one in stack})
@@ -184,7 +184,7 @@ def _tell(name: str | None) -> None:
 
 
 def _plan(key: _Key) -> None:
-    """Expect a function that is compiled, what it calls, and with the first of them what else will be called."""
+    """Expect a function that is compiled and what it calls; with an outermost one what else will be."""
     from ryusa.compiled.function import latest
 
     _expect(key)
