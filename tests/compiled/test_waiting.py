@@ -41,7 +41,7 @@ def test_each_function_has_seconds_of_its_own_and_nothing_is_counted_twice(folde
     inside, _, outside = make()
     assert outside(2.0, None) == 5.0
     new = waiting.done().since(before)
-    assert (new.entries, new.functions) == (1, 2)
+    assert new.functions == 2
     found = {one.about["name"]: one.about["seconds"] for one in store.own().listed()}
     assert set(found) == {inside.name, outside.name}
     assert 0.0 < sum(found.values()) < 1.05 * new.wall + 0.01
@@ -65,15 +65,17 @@ def test_what_will_be_called_counts_as_left_unless_it_is_in_the_store(folder):
     names: list[set[str]] = []
 
     def heard(name):
-        names.append({f"{kind} {one.name.rpartition('.')[2]}" for kind, one in waiting._now.left})
+        left = [one if isinstance(one, str) else f"{one[0]} {one[1].__name__}" for one in waiting._now.left]
+        names.append(set(left))
 
-    with waiting.told(heard, (outside.name, "no.such.function")):
+    with waiting.told(heard, {f"entry {outside.name}": 1.0, "piece not.yet.made": 3.0}):
         inside(1.0)
-    assert names[0] == {"entry inside", "entry outside", "inner inside", "inner other"} and names[1] == set()
+    called = {"entry inside", "entry outside", "inner inside", "inner other"}
+    assert names[0] == {*called, "piece not.yet.made"} and names[1] == set()
     with waiting.told(lambda name: None):
         outside(1.0, None)
     _, third, again = make()  # the same text in new functions
-    with waiting.told(heard, (again.name,)):
+    with waiting.told(heard, {f"entry {again.name}": 1.0}):
         third(1.0)
     assert names[2] == {"entry other"}
 
@@ -82,7 +84,9 @@ def test_seconds_outlast_a_change_of_the_function_and_an_empty_store(folder):
     outside = make()[2]
     outside(2.0, None)
     found = Seconds(folder)
-    assert found.by_name.keys() == {f"entry {outside.name}", f"inner {make()[0].name}"}
+    name = outside.name
+    assert found.by_name.keys() == {f"entry {name}", f"whole entry {name}", f"inner {make()[0].name}"}
+    assert found.by_name[f"whole entry {name}"] >= found.by_name[f"entry {name}"]
     assert len(found.contents) == 2
     store.own().clear()
     assert Seconds(folder).by_name == found.by_name and not Seconds(folder).contents
@@ -92,8 +96,10 @@ def test_seconds_outlast_a_change_of_the_function_and_an_empty_store(folder):
         return x + 2.0
 
     changed.name = outside.name
-    with waiting.told(lambda name: None):
-        assert waiting._record().by_name[f"entry {outside.name}"] == found.by_name[f"entry {outside.name}"]
+    expected: list[float] = []
+    with waiting.told(lambda _: expected.append(sum(waiting._now.left.values()))):
+        changed(1.0)
+    assert expected == [found.by_name[f"entry {name}"], 0.0]
 
 
 @pytest.mark.parametrize(

@@ -113,7 +113,7 @@ def _path_of(case: str) -> Path:
 
 
 def _print(tier: Any) -> None:
-    """Print what one store holds, by function that Python calls."""
+    """Print what one store holds, by function that is not built into another."""
     from rich import box
     from rich.console import Console
     from rich.markup import escape
@@ -123,7 +123,7 @@ def _print(tier: Any) -> None:
 
     groups: dict[tuple[str, str], list[Any]] = {}
     for one in tier.listed():
-        name = one.about["name"] if one.about["kind"] == "entry" else _OTHER
+        name = _OTHER if one.about["kind"] == "inner" else one.about["name"]
         groups.setdefault((one.about["processor"], name), []).append(one)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("what", "function", "types", "kB", "seconds", "last used", "processor"):

@@ -144,10 +144,14 @@ class Pieces(CPUDispatcher):  # type: ignore[misc]
         super().__init__(function.py_func, targetoptions=options)
         self.function, self._cache = function, _Kept(function, "piece")
 
+    def compile(self, sig: Any) -> Any:
+        """Load or compile the code for these types."""
+        with global_compiler_lock, compiling(), waiting.asked(self.function, "piece"):
+            return super().compile(sig)
+
     def piece(self, *given: Any) -> Piece:
         """The piece for arguments of these types."""
-        with global_compiler_lock, compiling():
-            self.compile(given)
+        self.compile(given)
         return Piece(self.overloads[given])
 
 

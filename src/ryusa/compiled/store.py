@@ -40,8 +40,8 @@ class Kept:
     Attributes
     ----------
     file : where.
-    about : name, kind (`inner` is built into other kernels, `entry` is called from Python), seconds of
-        processor time that compiling took without what it calls, processor.
+    about : name, kind (`inner` is built into other code, `piece` is called by address, `entry` from
+        Python), seconds of processor time that compiling took without what it calls, processor.
     size : bytes on disk.
     used : when it was last read or written [s since 1970], to a day.
     """

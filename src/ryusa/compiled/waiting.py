@@ -7,11 +7,12 @@ times what the functions of this process took over what was expected of them.
 """
 
 import time
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from itertools import zip_longest
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ryusa.compiled import store
@@ -23,10 +24,10 @@ if TYPE_CHECKING:
 
 # Seconds for each byte of a function's bytecode and of all that it may call, as the saltation case took on
 # one core of an AMD EPYC (Zen 5): with half of the functions that the text names not needed.
-_A_BYTE = {"inner": (0.09e-3, 0.0), "entry": (0.25e-3, 0.02e-3)}
+_A_BYTE = {"inner": (0.09e-3, 0.0), "entry": (0.25e-3, 0.02e-3), "piece": (0.25e-3, 0.02e-3)}
 _UNSURE = 2.0  # seconds that must have been compiled before their pace counts for as much as the record
 
-_Key = tuple[str, "Compiled"]  # kind and function
+_Key = tuple[str, "Compiled"]  # kind (`entry`, `piece` or `inner`) and function
 
 
 @dataclass
@@ -47,23 +48,19 @@ class Done:
 
     Attributes
     ----------
-    entries : functions that Python calls.
-    functions : all, with those that they call.
+    functions : with those that are built into them.
     wall : wall time [s], with what is compiled at this moment.
     """
 
-    entries: int = 0
     functions: int = 0
     wall: float = 0.0
 
     def since(self, earlier: "Done") -> "Done":
         """What was compiled after an earlier moment."""
-        return Done(
-            self.entries - earlier.entries, self.functions - earlier.functions, self.wall - earlier.wall
-        )
+        return Done(self.functions - earlier.functions, self.wall - earlier.wall)
 
 
-Listener = Callable[[str | None], None]  # told the name of a function that Python calls; None when it is done
+Listener = Callable[[str | None], None]  # told the name of an entry or a piece; None when it is done
 
 
 class _Process:
@@ -73,11 +70,11 @@ class _Process:
         self.open: list[_Open] = []
         self.done = Done()
         self.met: set[_Key] = set()
-        self.left: dict[_Key, float] = {}  # expected seconds of what has not been met
+        self.left: dict[_Key | str, float] = {}  # expected seconds of what has not been met; by name if new
         self.expected = self.took = 0.0  # [s] of what has been compiled
         self.own: dict[str, float] = {}  # by kind and name, since the record was last written
         self.contents: list[str] = []
-        self.listeners: list[tuple[Listener, tuple[str, ...]]] = []
+        self.listeners: list[tuple[Listener, Mapping[str, float]]] = []
 
 
 _now = _Process()
@@ -88,7 +85,7 @@ def done() -> Done:
     stack, found = list(_now.open), _now.done
     if not stack or not stack[0].compiles:
         return found
-    return Done(found.entries, found.functions, found.wall + time.perf_counter() - stack[0].began)
+    return Done(found.functions, found.wall + time.perf_counter() - stack[0].began)
 
 
 def left() -> float:
@@ -103,15 +100,16 @@ def left() -> float:
 
 
 @contextmanager
-def told(listener: Listener, expected: Iterable[str] = ()) -> Generator[None]:
-    """Tell a listener of each function that Python calls and that is compiled.
+def told(listener: Listener, expected: Mapping[str, float] = MappingProxyType({})) -> Generator[None]:
+    """Tell a listener of each entry and each piece that is compiled.
 
     Parameters
     ----------
     listener : called in the thread that compiles, before and after.
-    expected : names of functions that will be called; they count as left.
+    expected : functions that will be asked for, by kind and name, with the processor time [s] that each
+        takes with all that it calls, where this machine knows no better; they count as left.
     """
-    entry = (listener, tuple(expected))
+    entry = (listener, expected)
     _now.listeners.append(entry)
     try:
         yield
@@ -121,7 +119,7 @@ def told(listener: Listener, expected: Iterable[str] = ()) -> Generator[None]:
 
 @contextmanager
 def asked(function: "Compiled", kind: str) -> Generator[None]:
-    """Load or compile a function of a kind (`inner` or `entry`) within this block."""
+    """Load or compile a function of a kind within this block."""
     own = _Open((kind, function), time.perf_counter(), time.thread_time())
     _now.open.append(own)
     try:
@@ -167,12 +165,11 @@ def _close(own: _Open, *, whole: bool) -> None:
             name = f"{kind} {function.name}"
             _now.own[name] = _now.own.get(name, 0.0) + seconds - own.inside_own
             _now.contents += _content(own.key)
-            was = _now.done
-            _now.done = Done(was.entries + (kind == "entry"), was.functions + 1, was.wall)
+            _now.done = Done(_now.done.functions + 1, _now.done.wall)
     if not _now.open and own.compiles:
-        was = _now.done
-        _now.done = Done(was.entries, was.functions, was.wall + wall)
+        _now.done = Done(_now.done.functions, _now.done.wall + wall)
         _now.left.clear()
+        _now.own[f"whole {kind} {function.name}"] = seconds
         _record().add(_now.own, _now.contents)
         _now.own, _now.contents = {}, []
         _tell(None)
@@ -190,10 +187,12 @@ def _plan(key: _Key) -> None:
     _expect(key)
     if len(_now.open) > 1:
         return
-    for _, names in list(_now.listeners):
-        for name in names:
-            other = ("entry", latest[name]) if name in latest else None
-            if other is not None and other not in _now.met and not _remembered(other):
+    for _, expected in list(_now.listeners):
+        for named, seconds in expected.items():
+            kind, _, name = named.partition(" ")
+            if (made := latest.get(name)) is None:  # it will be made for a kind of case
+                _now.left[named] = _record().by_name.get(f"whole {named}", seconds)
+            elif (other := (kind, made)) not in _now.met and not _remembered(other):
                 _expect(other)
 
 
