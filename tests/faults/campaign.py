@@ -29,7 +29,7 @@ from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, loop, recorder, vtkhdf
 
 CHECKPOINT = 0.05  # s of wall time
-NOT_THE_SAME = {"wall", "particle_steps_per_second"}  # of a summary
+NOT_THE_SAME = {"wall", "compiled", "particle_steps_per_second"}  # of a summary
 
 
 def run(kind: str, folder: Path, **how: Any) -> Results:

@@ -1,5 +1,4 @@
 import io
-import time
 from pathlib import Path
 from typing import Any
 
@@ -99,14 +98,19 @@ def test_a_terminal_gets_a_bar_and_lines_stay_above_it(tmp_path: Path, now: list
     assert "t 5 s" not in (tmp_path / "log.txt").read_text().splitlines()[0]
 
 
-def test_the_waiting_message_is_printed_only_if_a_block_is_slow(
-    tmp_path: Path, now: list[float], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("kind", [io.StringIO, Terminal])
+def test_time_in_which_the_run_waits_is_no_part_of_the_estimate(
+    tmp_path: Path, now: list[float], kind: type[io.StringIO]
 ) -> None:
-    monkeypatch.setattr("ryusa.running.progress._SLOW_AFTER", 0.05)
-    stream = io.StringIO()
-    progress = make(tmp_path, now, stream)
-    with progress.explain_if_slow("quick"):
-        pass
-    with progress.explain_if_slow("compiling"):
-        time.sleep(0.3)
-    assert stream.getvalue() == "compiling\n"
+    progress = make(tmp_path, now, kind())
+    progress.pause()
+    now[0] = 100.0
+    progress.busy("compiling: contacts and motion")
+    progress.go_on()
+    progress.update(moment(0.01))
+    assert (tmp_path / "log.txt").read_text() == ""
+    now[0] = 110.0
+    progress.update(moment(0.5))
+    assert progress.plain == (kind is io.StringIO)
+    progress.close()
+    assert "about 10 s left" in (tmp_path / "log.txt").read_text()

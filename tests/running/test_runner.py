@@ -1,6 +1,7 @@
 import json
 import os
 import signal
+import time
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from ryusa.casefile import derive, estimate, read_text
+from ryusa.compiled import waiting
 from ryusa.errors import CaseError, DiskFull, ResultsError, RunError
 from ryusa.laws.families import Rolling
 from ryusa.model import RollingLaw
@@ -437,18 +439,23 @@ def test_a_grain_that_spins_in_place_is_not_at_rest(
     assert go(scene=scene_with(3, rotation=False), stop=stop, overwrite=True).summary["steps"] <= 125
 
 
-def test_slow_kernels_are_explained_once(
+def test_a_run_separates_compiling_from_running(
     go: Any, engine: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import time
+    wall = [0.0]
+    monkeypatch.setattr(waiting, "done", lambda: waiting.Done(1, 1, wall[0]))
+    results = go(progress=True, stop=Stop(time=1e-3))
+    assert results.summary["compiled"] == 0.0 and "compil" not in capsys.readouterr().err
 
-    monkeypatch.setattr("ryusa.running.progress._SLOW_AFTER", 0.02)
-    load = engine.load
-    monkeypatch.setattr(engine, "load", lambda *arguments: (time.sleep(0.2), load(*arguments)))
-    engine.on_advance = lambda step: time.sleep(0.2) if step == 1 else None
-    log = (go(progress=True, stop=Stop(time=1e-3)).folder / "log.txt").read_text()
-    assert log.count("compiling for this processor") == 1
-    assert capsys.readouterr().err.count("compiling for this processor") == 1
+    def compile_at_first(step: int) -> None:
+        if step == 1:
+            time.sleep(0.1)
+            wall[0] += 0.1
+
+    engine.on_advance = compile_at_first
+    summary = go(progress=True, stop=Stop(time=1e-3), overwrite=True).summary
+    assert summary["compiled"] == pytest.approx(0.1) and summary["wall"] >= 0.1
+    assert "compiled 0.1 s, stepped and recorded" in capsys.readouterr().err
 
 
 def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,7 @@ _FAMILIES = (
     "ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view", "ryusa.cli.film",
     "ryusa.cli.report", "ryusa.cli.export",
     "ryusa.cli.design", "ryusa.cli.sweep", "ryusa.cli.soften", "ryusa.cli.calibrate",
-    "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.doctor",
+    "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.kernels", "ryusa.cli.doctor",
 )  # fmt: skip
 OBJECTS = 20_000  # made between two searches for garbage; loading modules makes many, and all of them stay
 INTERRUPTED = 130  # exit code after Ctrl-C

@@ -44,6 +44,7 @@ class _Digest:
     def __init__(self) -> None:
         self.hash = hashlib.sha256()
         self.open: set[int] = set()  # functions whose content is being taken: a cycle is told by name
+        self.called: list[Any] = []  # compiled functions met
 
     def put(self, kind: str, data: str | bytes) -> None:
         raw = data.encode() if isinstance(data, str) else data
@@ -71,6 +72,7 @@ class _Digest:
         elif isinstance(value, ModuleType):
             self.put("module", value.__name__)
         elif hasattr(kind, "content") and hasattr(kind, "inner"):  # Compiled (function.py)
+            self.called.append(value)
             self.put("compiled", value.content)
         elif isinstance(value, FunctionType):
             self.function(value)
@@ -196,8 +198,10 @@ def _name(thing: Any) -> str:
     return f"{getattr(thing, '__module__', '')}.{getattr(thing, '__qualname__', type(thing).__name__)}"
 
 
-def content_of(function: Callable[..., Any], *more: Any) -> str:
+def content_of(function: Callable[..., Any], *more: Any, called: list[Any] | None = None) -> str:
     """Digest of a function and of all that it calls and reads, as hexadecimal digits.
+
+    Compiled functions that it may call, though not those that these call, are added to `called`.
 
     Raises
     ------
@@ -205,6 +209,7 @@ def content_of(function: Callable[..., Any], *more: Any) -> str:
     """
     digest = _Digest()
     digest.values("more", more)
+    digest.called = digest.called if called is None else called
     digest.function(function)
     return digest.hash.hexdigest()
 

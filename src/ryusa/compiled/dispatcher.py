@@ -1,7 +1,6 @@
 """Numba's dispatchers of a compiled function: one for kernels that call it, one for calls from Python."""
 
 import pickle
-import time
 from typing import TYPE_CHECKING, Any
 
 from numba.core import serialize, sigutils
@@ -9,7 +8,7 @@ from numba.core import types as numba_types
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-from ryusa.compiled import processor, store
+from ryusa.compiled import processor, store, waiting
 from ryusa.compiled.content import UnknownContentError, digest_of
 from ryusa.compiled.numba_parts import (
     InnerPipeline,
@@ -47,7 +46,6 @@ class _Kept:
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """What the store has for these types; None where it is to be compiled."""
-        self._began = time.process_time()
         rebuild = inner_of if self._kind == "inner" else entry_of
         for tier in store.tiers():
             key = self.key(signature, tier.processor)
@@ -59,6 +57,7 @@ class _Kept:
                 return rebuild(context, pickle.loads(data))
             except UNPICKLED:  # of a class or module that is no longer there
                 continue
+        waiting.missed()
         return None
 
     def save_overload(self, signature: Any, made: Any) -> None:
@@ -73,7 +72,7 @@ class _Kept:
         about = {
             "name": function.name,
             "kind": self._kind,
-            "seconds": round(time.process_time() - self._began, 3),
+            "seconds": round(waiting.own_seconds(), 3),
             "processor": processor.own().name,
         }
         store.own().save(key, about, serialize.dumps(parts))
@@ -125,7 +124,7 @@ class Inner(CPUDispatcher):  # type: ignore[misc]
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the code for these types."""
-        with global_compiler_lock, compiling():
+        with global_compiler_lock, compiling(), waiting.asked(self.function, "inner"):
             return super().compile(sig)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -145,10 +144,14 @@ class Pieces(CPUDispatcher):  # type: ignore[misc]
         super().__init__(function.py_func, targetoptions=options)
         self.function, self._cache = function, _Kept(function, "piece")
 
+    def compile(self, sig: Any) -> Any:
+        """Load or compile the code for these types."""
+        with global_compiler_lock, compiling(), waiting.asked(self.function, "piece"):
+            return super().compile(sig)
+
     def piece(self, *given: Any) -> Piece:
         """The piece for arguments of these types."""
-        with global_compiler_lock, compiling():
-            self.compile(given)
+        self.compile(given)
         return Piece(self.overloads[given])
 
 
@@ -162,5 +165,5 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the code for these types."""
-        with global_compiler_lock, compiling():
+        with global_compiler_lock, compiling(), waiting.asked(self.function, "entry"):
             return super().compile(sig)

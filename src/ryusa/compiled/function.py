@@ -5,11 +5,13 @@ from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
 from typing import Any, TypeVar, cast
+from weakref import WeakValueDictionary
 
 from ryusa.compiled.content import UnknownContentError, content_of
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+latest: WeakValueDictionary[str, "Compiled"] = WeakValueDictionary()  # of each name, the one made last
 FAST = {"contract", "nsz"}  # fused multiply-add, sign of zero ignored; no flag that hides a NaN
 
 
@@ -21,13 +23,16 @@ class Compiled:
     py_func : the function as written.
     options : options of Numba.
     name : module and name of the function.
+    calls : compiled functions that its text names; known once its content is.
     """
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
         self.py_func, self.options = function, options
         self.name = f"{function.__module__}.{function.__qualname__}"
+        self.calls: list[Compiled] = []
         self._asked = False
+        latest[self.name] = self
 
     def __call__(self, *given: Any) -> Any:
         """Call the compiled function, from the store or compiled now."""
@@ -48,7 +53,7 @@ class Compiled:
             raise UnknownContentError(f"{self!r} calls itself")
         self._asked = True
         try:
-            return content_of(self.py_func, *sorted(self._plain().items()))
+            return content_of(self.py_func, *sorted(self._plain().items()), called=self.calls)
         finally:
             self._asked = False
 

@@ -23,6 +23,7 @@ import platformdirs
 
 from ryusa.compiled.processor import Processor
 from ryusa.compiled.processor import own as own_processor
+from ryusa.compiled.seconds import Seconds
 
 _MAGIC = b"ryusa kernel 1\n"
 _HASH = hashlib.sha256().digest_size
@@ -39,8 +40,8 @@ class Kept:
     Attributes
     ----------
     file : where.
-    about : name, kind (`inner` is built into other kernels, `entry` is called from Python), seconds of
-        processor time that compiling took, processor.
+    about : name, kind (`inner` is built into other code, `piece` is called by address, `entry` from
+        Python), seconds of processor time that compiling took without what it calls, processor.
     size : bytes on disk.
     used : when it was last read or written [s since 1970], to a day.
     """
@@ -138,6 +139,7 @@ class Store:
             with contextlib.suppress(OSError):
                 file.unlink()
                 gone += 1
+        Seconds(self.folder).forget_contents()
         return gone
 
     def tidy(self) -> None:

@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -17,13 +17,14 @@ from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CheckpointScheduler
+from ryusa.running.compiling import compiling_told
 from ryusa.running.crossing import of_heads
 from ryusa.running.disk import retry_when_full
 from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import StopSignal, catch_signals
 from ryusa.running.loop_state import LoopState
-from ryusa.running.pace import Pace, compiling
+from ryusa.running.pace import Pace, stepping_time
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
@@ -85,7 +86,7 @@ class Loop:
         block : state of the loop, its part of a checkpoint.
         """
         try:
-            with catch_signals() as self._signal:
+            with catch_signals() as self._signal, compiling_told(self.progress, self.scene):
                 self._run(state, block)
                 self._retry_when_full(self.recorder.flush)
                 self._write_checkpoint()  # a complete run keeps it too: it can be lengthened
@@ -166,10 +167,10 @@ class Loop:
     def _continue_from(self, state: State, block: CheckpointBlock) -> None:
         """Continue at the step of a checkpoint, which may be any step."""
         self._step = state.step
-        self._pace.begin()
         self._rest = RestDetector(self.stop)
         self._saltations = SaltationCounter(self.recorder.first_scene, self.stop)
         saved = LoopState.from_block(block, self.scene)
+        self._pace.begin(saved.compiled)
         self._t_zero, self._first, self._frame = saved.t_zero, saved.first, saved.frame
         self._rest.since = saved.since
         self._saltations.parted[:], self._saltations.count[:] = saved.parted, saved.hops
@@ -189,8 +190,7 @@ class Loop:
             raise CheckpointError(f"the state in the checkpoint cannot be used ({error})") from error
 
     def _load(self, state: State) -> None:
-        with compiling(self.progress):
-            self.engine.load(with_servos(self.scene, self.servo), state)
+        self.engine.load(with_servos(self.scene, self.servo), state)
         self._loaded = True
         self._start_water(state)
 
@@ -200,7 +200,7 @@ class Loop:
             t_zero=self._t_zero, first=self._first, frame=self._frame, changed=self._n_changed,
             resting=self._at_rest, hopped=self._saltations_done, since=self._rest.since,
             wall=time.monotonic() - self._begun, parted=self._saltations.parted, hops=self._saltations.count,
-            gathered=in_order(self._gathered),
+            gathered=in_order(self._gathered), compiled=self._pace.compiled,
         )  # fmt: skip
 
     def _end_stretch(self) -> None:
@@ -269,9 +269,8 @@ class Loop:
         return retry_when_full(action, self._signal, self.progress.line)
 
     def _advance(self, n_steps: int) -> None:
-        begun = time.monotonic()
-        with compiling(self.progress) if self._pace.calls == 0 else nullcontext():
-            flags = self._steps(n_steps)
+        begun = stepping_time()
+        flags = self._steps(n_steps)
         if flags:
             self._step = self.engine.grains().step
             flags.raise_if_any()
@@ -401,6 +400,7 @@ class Loop:
             "events": self.scene.events.name.lower(),
             "saltations": None if self.stop.saltations is None else self._saltations.count.tolist(),
             "wall": time.monotonic() - self._begun,
+            "compiled": self._pace.compiled,
             "particle_steps_per_second": self._pace.rate,
             **numbers,
             **({"precision": self.precision.summary()} if self.precision.asked else {}),

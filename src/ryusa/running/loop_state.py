@@ -26,6 +26,7 @@ class LoopState:
     parted: NDArray[np.float64]  # when each grain last left the bed [s], shape (n_grain,)
     hops: NDArray[np.int64]  # saltations by grain, shape (n_grain,)
     gathered: NDArray[np.void]  # contacts that ended and are not yet recorded, dtype EVENT
+    compiled: float = 0.0  # wall time in which the run compiled [s]; earlier checkpoints have none
 
     def to_block(self) -> CheckpointBlock:
         """Convert to numbers and arrays for a checkpoint."""
@@ -50,6 +51,7 @@ class LoopState:
                 changed=int(about["changed"]), resting=bool(about["resting"]), hopped=bool(about["hopped"]),
                 since=None if since is None else float(since), wall=float(about["wall"]),
                 parted=arrays["parted"], hops=arrays["hops"], gathered=gathered,
+                compiled=float(about.get("compiled", 0.0)),
             )  # fmt: skip
         except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CheckpointError(
@@ -64,7 +66,7 @@ class LoopState:
             or gathered.ndim != 1
             or any(len(one) and not (one.min() >= 0 and one.max() < last) for one in ids)
             or any(len(one) and one.max() >= n for one in ids[:1])
-            or not (np.isfinite(state.t_zero) and 0.0 <= state.wall < 1e12)
+            or not (np.isfinite(state.t_zero) and 0.0 <= state.compiled <= state.wall < 1e12)
             or not all(0 <= one < 2**53 for one in (state.first, state.frame, state.changed))
             or not math.isfinite(state.since or 0.0)
         ):

@@ -2,24 +2,14 @@
 
 import math
 import time
-from collections.abc import Generator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from ryusa.compiled import waiting
 from ryusa.engine import registry
-from ryusa.running.progress import Progress
 
 _LONG = 2.0  # days on the CPU engine from which other engines are named
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
-_COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
-
-
-@contextmanager
-def compiling(progress: Progress) -> Generator[None]:
-    """Explain a call that takes long because it compiles."""
-    with progress.explain_if_slow(_COMPILING):
-        yield
 
 
 def other_engines(engine: object, n_grain: int, seconds: float, threads: int) -> tuple[str, ...]:
@@ -48,9 +38,14 @@ def other_engines(engine: object, n_grain: int, seconds: float, threads: int) ->
     )
 
 
+def stepping_time() -> float:
+    """A wall clock that stands still while a function is compiled [s]."""
+    return time.monotonic() - waiting.done().wall
+
+
 @dataclass
 class Pace:
-    """Speed of a run, from the wall time of the calls of its engine.
+    """Speed of a run, from the wall time of the calls of its engine; compiling does not count.
 
     Attributes
     ----------
@@ -59,16 +54,18 @@ class Pace:
 
     calls: int = 0
     _speed: float = 0.0  # steps per second, running mean
-    _since: float = 0.0  # wall time when kernels were ready
+    _since: float = 0.0  # wall time without compiling, when kernels were ready
     _moved: int = 0  # grains times steps since then
+    _compiled_before: float = field(default_factory=lambda: waiting.done().wall)  # by earlier runs
 
-    def begin(self) -> None:
-        """Count from now on."""
-        self._since = time.monotonic()
+    def begin(self, compiled: float) -> None:
+        """Count from now on, in a run that has compiled for some time before [s]."""
+        self._since = stepping_time()
+        self._compiled_before -= compiled
 
     def took(self, n_steps: int, n_grain: int, begun: float) -> None:
-        """Take a call of n_steps steps of n_grain grains that began at a wall time [s]."""
-        now = time.monotonic()
+        """Take a call of n_steps steps of n_grain grains that began at a `stepping_time` [s]."""
+        now = stepping_time()
         speed = n_steps / max(now - begun, 1e-9)
         if self.calls <= 1:
             self._since, self._moved, self._speed = now, 0, speed
@@ -85,6 +82,11 @@ class Pace:
         return max(1, int(self._speed * _CHUNK))
 
     @property
+    def compiled(self) -> float:
+        """Wall time of the run so far in which it compiled [s]."""
+        return waiting.done().wall - self._compiled_before
+
+    @property
     def rate(self) -> float:
         """Particle-steps per second since compilation, recording included."""
-        return self._moved / max(time.monotonic() - self._since, 1e-9)
+        return self._moved / max(stepping_time() - self._since, 1e-9)

@@ -2,10 +2,8 @@
 
 import math
 import sys
-import threading
 import time
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
 _BAR_EVERY = 0.2  # s
 _LINE_EVERY = 5.0  # s
 _LINE_SHARE = 0.1  # of the run; one line per such share if that takes longer than _LINE_EVERY
-_SLOW_AFTER = 1.5  # s after which a slow first step is explained
 _ESTIMATED = 1e-3  # share of the run above which the remaining time is estimated
 
 
@@ -60,11 +57,10 @@ class Progress:
         self._shown, self._clock = shown, clock
         self._stream = sys.stderr if stream is None else stream
         self._log = log.open("a", encoding="utf-8", buffering=1)
-        self._begun = self._last = self._last_log = clock()
+        self._begun = self._last = self._last_log = self._paused = clock()
         self._share = self._share_log = 0.0  # of the run that is done: at the start, at the last line
         self._bar: RichProgress | None = None
         self._task: TaskID | None = None
-        self._explained: set[str] = set()
         if shown and self._stream.isatty():
             self._bar, self._task = _bar(self._stream)
 
@@ -100,21 +96,25 @@ class Progress:
         if self._bar is None:
             self._show(text)
 
-    @contextmanager
-    def explain_if_slow(self, text: str) -> Generator[None]:
-        """Write `text` if the block takes long, once per run."""
-        timer = threading.Timer(_SLOW_AFTER, self._explain, [text])
-        timer.daemon = True
-        timer.start()
-        try:
-            yield
-        finally:
-            timer.cancel()
+    @property
+    def plain(self) -> bool:
+        """Whether lines are all that there is: no bar."""
+        return self._bar is None
 
-    def _explain(self, text: str) -> None:
-        if text not in self._explained:
-            self._explained.add(text)
-            self.line(text)
+    def pause(self) -> None:
+        """The run waits: from here to `go_on` no time passes for the estimate of what remains."""
+        self._paused = self._clock()
+
+    def go_on(self) -> None:
+        """The run goes on after a `pause`."""
+        waited = self._clock() - self._paused
+        self._begun, self._last_log = self._begun + waited, self._last_log + waited
+        self.busy("")
+
+    def busy(self, text: str) -> None:
+        """Show in the bar what the run waits for, instead of its numbers."""
+        if self._bar is not None and self._task is not None:
+            self._bar.update(self._task, now=text)
 
     def close(self) -> None:
         """Remove the bar and close the log."""

@@ -4,17 +4,18 @@ from typing import Any
 
 from ryusa.running.energy_terms import energy_lines
 
+_WORTH_SAYING = 0.05  # [s] of compiling
+
 
 def summary_lines(summary: dict[str, Any]) -> list[str]:
     """Largest overlap, steps per contact, restitution, energy account, warnings."""
     recorded = summary.get("events") != "none"
     if summary.get("water", {}).get("grains") == 0:
         return _of_water(summary)
-    contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded,"
+    contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded"
     lines = [
-        f"{summary['steps']} steps, {summary['frames']} frames, {contacts} "
-        f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s "
-        "without compilation)",
+        f"{summary['steps']} steps, {summary['frames']} frames, {contacts}: {_took(summary)} "
+        f"({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s)",
         f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable range {_band(summary)})",
         _steps(summary["steps_per_contact"]),
         *(_contacts(summary) if recorded else ()),
@@ -30,9 +31,16 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
 
 
+def _took(summary: dict[str, Any]) -> str:
+    """Wall time in which the run compiled, where it did, and of the rest of it."""
+    compiled = summary.get("compiled", 0.0)
+    before = f"compiled {compiled:.1f} s, " if compiled >= _WORTH_SAYING else ""
+    return f"{before}stepped and recorded {summary['wall'] - compiled:.1f} s"
+
+
 def _of_water(summary: dict[str, Any]) -> list[str]:
     """Lines of a run without a grain."""
-    done = f"{summary['steps']} steps, {summary['frames']} frames in {summary['wall']:.1f} s"
+    done = f"{summary['steps']} steps, {summary['frames']} frames: {_took(summary)}"
     return [done, _water(summary["water"]), *(f"warning: {warning}" for warning in summary["warnings"])]
 
 

@@ -49,15 +49,16 @@ def pieces_of(variant: KernelVariant, choice: LawChoice, held: StepArrays, work:
     def piece(function: Any, *takes: Any) -> Piece:
         return function.pieces.piece(*takes)
 
+    # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
+    prune, forces = make_prune(bool(variant.walls)), make_block_forces(forces_kind(variant, choice))
+    moving = motion_kind(variant, choice)
+    move, move_bodies = make_integrate(moving), make_move_bodies(moving) if variant.bodies else None
     return StepPieces(
-        prune=piece(make_prune(bool(variant.walls)), integer, number, number, integer, lent_work, lent),
-        forces=piece(
-            make_block_forces(forces_kind(variant, choice)),
-            integer, integer, integer, number, number, flag, lent_work, lent,
-        ),
-        move=piece(make_integrate(motion_kind(variant, choice)), *moves),
-        move_bodies=piece(make_move_bodies(motion_kind(variant, choice)), *moves) if variant.bodies else None,
-    )  # fmt: skip
+        prune=piece(prune, integer, number, number, integer, lent_work, lent),
+        forces=piece(forces, integer, integer, integer, number, number, flag, lent_work, lent),
+        move=piece(move, *moves),
+        move_bodies=None if move_bodies is None else piece(move_bodies, *moves),
+    )
 
 
 @kernel(nogil=True, fastmath=FAST)
