@@ -32,7 +32,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden constraints clean
+.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -169,6 +169,12 @@ gallery: $(HAS_RYUSA) ## run the packaged cases of the gallery and draw their pi
 
 bench: $(HAS_RYUSA) ## time ryusa beside its peers on a quiet machine (hours); table in benchmarks/results/
 	$(BIN)/python benchmarks/run.py
+
+kernels: $(HAS_RYUSA) ## compile what the packaged cases need; wheels of ryusa and of that code in dist/ (ten minutes)
+	$(BIN)/python kernels/make.py build/kernels dist
+
+kernels-check: $(HAS_RYUSA) ## first runs from these two wheels alone: nothing compiled, the same bits (minutes)
+	$(BIN)/python kernels/check.py build/kernels dist
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt

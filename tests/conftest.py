@@ -1,7 +1,11 @@
 """Settings of all tests, and the quick level: `--quick` leaves out what is marked `full`."""
 
+import os
+
 import pytest
 from hypothesis import settings
+
+os.environ["RYUSA_KERNELS"] = "native"  # what is tested is compiled from this source, whatever is installed
 
 # With new examples on every run one run of the suite fails and the next passes; `make fuzz` looks further.
 # No deadline: first calls compile, and machines are shared.

@@ -170,8 +170,10 @@ def test_the_version_is_the_same_everywhere() -> None:
 
     import ryusa
 
-    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    version = project["version"]
     assert ryusa.__version__ == version
+    assert project["optional-dependencies"]["kernels"] == [f"ryusa-kernels=={version}"]
     assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 

@@ -12,7 +12,16 @@ from ryusa.running import doctor
 def test_the_doctor_names_cache_threads_vectors_and_engines() -> None:
     done = CliRunner().invoke(app, ["doctor"])
     assert done.exit_code == 0
-    for name in ("packages", "processor", "vectors", "threads", "cache", "engine cpu", "engine lammps"):
+    for name in (
+        "packages",
+        "processor",
+        "vectors",
+        "threads",
+        "cache",
+        "kernels",
+        "engine cpu",
+        "engine lammps",
+    ):
         assert f"\n{name} " in done.output
     assert "numba" in done.output
 

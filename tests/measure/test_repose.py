@@ -94,6 +94,18 @@ def test_a_thin_layer_of_grains_has_too_few_bins(make):
     assert not any("wall" in flag for flag in found.flags)
 
 
+def test_where_walls_are_the_floor_the_lowest_grain_lies_on_it(make):
+    run = standing(make, triangle(0.5))
+    lowest = run.frames.x[0, :, 2].min() - D / 2
+    run.scene = replace(
+        run.scene,
+        plane_normal=np.zeros((0, 3)),
+        plane_point=np.zeros((0, 3)),
+        plane_active=np.zeros(0, dtype=bool),
+    )
+    assert surface(run).floor == pytest.approx(lowest)
+
+
 def test_grains_that_left_the_heap_or_lie_below_its_floor_are_not_part_of_it(make):
     x = triangle(math.tan(math.radians(25.0)), columns=40)
     gone = np.array([(0.2, 0.0, 0.5 * D), (0.21, 0.0, 0.5 * D), (0.05, 0.0, -5 * D)])

@@ -15,7 +15,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.targetconfig import TargetConfig
 
-from ryusa.compiled.content import UnknownContentError, content_of
+from ryusa.compiled import processor
+from ryusa.compiled.content import UnknownContentError, content_of, digest_of
 
 _RARELY = 50_000, 20, 100  # thresholds of the garbage collector: a compiler makes many objects that all stay
 
@@ -154,11 +155,11 @@ def _identity(kind: Any, function: Any) -> Any:
 
     The number is part of the symbol. Kept code brings along what is built into it under the symbols of the
     process that compiled it; two functions that met under one symbol would be taken for one, and the linker
-    keeps the first.
+    keeps the first. The processor is in the number, too: code for another may be loaded beside (shipped.py).
     """
     made = _plain_identity(kind, function)
     try:
-        made.unique_id = content_of(function)[:24]
+        made.unique_id = digest_of(content_of(function), *processor.own().key)[:24]
     except UnknownContentError:
         return made  # never kept
     made.unique_name = f"{made.func_qualname}${made.unique_id}"

@@ -50,13 +50,17 @@ def own() -> Processor:
 
 @cache
 def versions() -> tuple[str, ...]:
-    """Versions of Python's bytecode, of Numba and LLVM, and the switches that Numba compiles with."""
+    """Versions of Python's bytecode, of Numba, LLVM and numpy, and the switches that Numba compiles with.
+
+    Of numpy the minor version: Numba has numpy's functions written anew and asks for no more.
+    """
     import llvmlite
     import numba
     import numpy
     from numba.core import config
 
-    found = [f"{one.__name__} {one.__version__}" for one in (numba, llvmlite, numpy)]
+    found = [f"{one.__name__} {one.__version__}" for one in (numba, llvmlite)]
+    found.append(f"numpy {'.'.join(numpy.__version__.split('.')[:2])}")
     switches = [f"{name} {getattr(config, name, None)}" for name in _SWITCHES]
     switches.append(f"svml {getattr(config, 'USING_SVML', None)}")
     python = f"{platform.python_implementation()} {sys.version_info.major}.{sys.version_info.minor}"

@@ -191,5 +191,8 @@ def own() -> Store:
 
 @cache
 def tiers() -> tuple[Store, ...]:
-    """The stores that are asked for code, in their order."""
-    return (own(),)
+    """The stores that are asked for code, in their order: the user's, and what comes as a package."""
+    from ryusa.compiled.shipped import shipped
+
+    package = shipped().store
+    return (own(),) if package is None else (own(), package)

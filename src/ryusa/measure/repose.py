@@ -240,12 +240,15 @@ def _still(scene: Scene, d: float) -> float:
 
 
 def _floor(scene: Scene, seen: Snapshot) -> float:
-    """Height of the floor [m]: mean crest of the fixed grains, or the plane, that the scene calls floor."""
+    """Height of the floor [m]: mean crest of the fixed grains, or the plane, that the scene calls floor.
+
+    Where walls are the floor, as in a flume, the lowest point of the grains stands for it.
+    """
     first, end = scene.groups.get("floor", (0, 0))
     fixed = np.arange(first, end) - scene.n_grain
     if len(fixed) and fixed[-1] < scene.n_fixed:
         return float((scene.x_fixed[fixed, 2] + 0.5 * scene.d_fixed[fixed]).mean())
-    if len(fixed):
+    if len(fixed) and fixed[-1] - scene.n_fixed < len(scene.plane_point):
         return float(scene.plane_point[fixed[0] - scene.n_fixed, 2])
     return float((seen.x[:, 2] - 0.5 * seen.d).min()) if len(seen.d) else 0.0
 

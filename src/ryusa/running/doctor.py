@@ -8,6 +8,7 @@ from typing import Any
 
 from ryusa import __version__
 from ryusa.compiled import store
+from ryusa.compiled.shipped import shipped
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
 
@@ -25,6 +26,7 @@ def diagnosis() -> list[tuple[str, str]]:
         ("vectors", _vectors()),
         ("threads", f"up to {_cores()} (ryusa run --threads N); the results do not depend on the number"),
         ("cache", _cache()),
+        ("kernels", shipped().finding),
         *((f"engine {name}", _engine(name)) for name in registry.names()),
     ]
 

@@ -1,0 +1,1 @@
+"""Compiled code of the packaged cases of ryusa; `ryusa doctor` says whether it is used."""
