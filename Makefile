@@ -20,6 +20,9 @@ SPREAD := -n $(JOBS) --dist worksteal
 LONGEST := --durations=30 --durations-min=1
 PYTEST := $(BIN)/python -m pytest -q $(SPREAD) $(LONGEST)
 
+# uv leaves bytecode to the first import: with this set, every process would compile all it imports.
+unexport PYTHONDONTWRITEBYTECODE
+
 # uv installs five times as fast as pip; where it cannot reach what pip is set up for, pip takes over.
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
 UV     := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt
