@@ -3,60 +3,49 @@
 import os
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ryusa.cases import FOLDERS, case_files
 from ryusa.cli.run import Threads
+from ryusa.spelling import known_word
+
+if TYPE_CHECKING:
+    from ryusa.compiled.store import Kept, Store
 
 _WIDE = 160  # columns of a table that is written to a file or pipe
 _MB = 2**20  # bytes
 _OTHER = "functions built into these"
 
-kernels = typer.Typer(
-    name="kernels",
-    help="List the code that is kept of compiled functions, or remove it.",
-    invoke_without_command=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
 
 def register(app: typer.Typer) -> None:
     """Put the commands of this module on the app."""
-    app.add_typer(kernels)
-    app.command()(warm)
+    for command in (kernels, warm):
+        app.command()(command)
 
 
-@kernels.callback()
-def listing(context: typer.Context) -> None:
-    """List the code that is kept of compiled functions: what it is, its size, what it took to compile.
+def kernels(
+    action: Annotated[
+        str | None,
+        typer.Argument(metavar="ACTION", help="clear: remove all code that is kept for this user."),
+    ] = None,
+) -> None:
+    """List the code that is kept of compiled functions: what it does, its size, what it took to compile.
 
     A run compiles each function that it needs once for this processor, and keeps it for all that follow.
     Code that was not used for 90 days is removed, and beyond 512 MiB what was not used for longest.
     """
-    if context.invoked_subcommand is not None:
-        return
     from ryusa.compiled import store
 
+    if action is not None:
+        known_word(action, ("clear",), "ACTION")
+        typer.echo(_cleared(store.own()))
+        return
     for k, tier in enumerate(store.tiers()):
         if k:
             typer.echo()
         _print(tier)
-
-
-@kernels.command()
-def clear() -> None:
-    """Remove all code that is kept for this user; the next runs compile anew."""
-    from ryusa.compiled import store
-    from ryusa.errors import RyusaError
-
-    own = store.own()
-    files, size = own.size()
-    gone = own.clear()
-    if gone < files:
-        raise RyusaError(f"{own.folder}: {files - gone} of {files} files cannot be removed; the others are")
-    typer.echo(f"{own.folder}: {gone} files removed, {size / _MB:.1f} MiB")
 
 
 def warm(
@@ -96,6 +85,17 @@ def warm(
         typer.echo(f"{name}: {said}")
 
 
+def _cleared(own: "Store") -> str:
+    """Remove all that a store holds; what was removed."""
+    files, size = own.size()
+    gone = own.clear()
+    if gone < files:
+        from ryusa.errors import RyusaError
+
+        raise RyusaError(f"{own.folder}: {files - gone} of {files} files cannot be removed; the others are")
+    return f"{own.folder}: {gone} files removed, {size / _MB:.1f} MiB"
+
+
 def _path_of(case: str) -> Path:
     """The case file of a path, or of the name of a packaged case."""
     if Path(case).suffix or Path(case).is_file():
@@ -112,7 +112,7 @@ def _path_of(case: str) -> Path:
     return known[case]
 
 
-def _print(tier: Any) -> None:
+def _print(tier: "Store") -> None:
     """Print what one store holds, by function that is not built into another."""
     from rich import box
     from rich.console import Console
@@ -121,7 +121,7 @@ def _print(tier: Any) -> None:
 
     from ryusa.running.compiling import words_of
 
-    groups: dict[tuple[str, str], list[Any]] = {}
+    groups: dict[tuple[str, str], list[Kept]] = {}
     for one in tier.listed():
         name = _OTHER if one.about["kind"] == "inner" else one.about["name"]
         groups.setdefault((one.about["processor"], name), []).append(one)
@@ -150,9 +150,9 @@ def _print(tier: Any) -> None:
         typer.echo(f"warning: {tier.trouble}")
 
 
-def _size(some: list[Any]) -> float:
+def _size(some: list["Kept"]) -> float:
     return sum(one.size for one in some) / _MB
 
 
-def _seconds(some: list[Any]) -> float:
+def _seconds(some: list["Kept"]) -> float:
     return sum(one.about["seconds"] for one in some)

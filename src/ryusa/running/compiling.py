@@ -43,7 +43,21 @@ _OF_GRAINS = {
     "entry ryusa.engine.cpu.time_loop.run": 1.9,
 }
 _OF_BODIES = {"piece ryusa.engine.cpu.rigid_bodies.make_move_bodies.<locals>.move_bodies": 2.0}
-_OF_WATER = {"entry ryusa.water.time_step.time_step": 5.0}
+_OF_COLUMN = {
+    "entry ryusa.water.exchange_step.water_at_grains": 1.8,
+    "entry ryusa.water.exchange_step.exchange_step": 10.0,
+}
+_OF_ROW = {
+    "entry ryusa.water.time_step.time_step": 6.7,
+    "entry ryusa.water.row_step.advance_row": 7.2,
+}
+_OF_GRAINS_IN_ROW = {
+    "entry ryusa.water.row_sums.sum_fixed_in_row": 2.0,
+    "entry ryusa.water.row_exchange.continue_ends": 1.6,
+    "entry ryusa.water.row_exchange.tell": 2.5,
+    "entry ryusa.water.row_exchange.means_at_grains": 1.4,
+    "entry ryusa.water.row_grain_sums.sum_grains_in_row": 2.9,
+}
 
 
 def words_of(name: str) -> str:
@@ -59,8 +73,14 @@ def words_of(name: str) -> str:
 
 def expected_of(scene: Scene) -> dict[str, float]:
     """Functions of a run that take long to compile, with what each takes [s]."""
-    grains = _OF_GRAINS | (_OF_BODIES if scene.bodies is not None else {}) if scene.n_grain else {}
-    return grains | (_OF_WATER if scene.column is not None or scene.row is not None else {})
+    expected: dict[str, float] = {}
+    if scene.n_grain:
+        expected |= _OF_GRAINS | (_OF_BODIES if scene.bodies is not None else {})
+    if scene.row is not None:
+        expected |= _OF_ROW | (_OF_GRAINS_IN_ROW if scene.n_grain else {})
+    elif scene.column is not None:
+        expected |= _OF_COLUMN
+    return expected
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from ryusa.running.timeline import Change
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-_STEPS = 8  # of the shortest stretch
+_STEPS = 8  # between two instants at which grains enter and leave
 _ENOUGH = 100_000  # particle-steps, after which grains that move have been listed anew
 
 
@@ -69,12 +69,11 @@ def warm(case: "Case | str | os.PathLike[str]", *, threads: int = 1) -> Done:
 def _stretch(scene: Scene) -> int:
     """Steps in which every kernel of a scene is asked for."""
     exchange = max([one.interval for one in (scene.column, scene.row and scene.row.column) if one] or [0])
-    traffic = 0 if scene.traffic is None else 2 * scene.traffic.interval
-    return max(_STEPS, exchange + 1, traffic, _ENOUGH // max(scene.n_grain, 1))
+    return max(2 * _STEPS, exchange + 1, _ENOUGH // max(scene.n_grain, 1))
 
 
 def _fed_at_once(scene: Scene) -> Scene:
-    """The scene whose feeds begin with the run."""
+    """The scene whose feeds begin with the run, and where grains enter and leave after a few steps."""
     traffic = scene.traffic
     if traffic is None:
         return scene
@@ -82,4 +81,4 @@ def _fed_at_once(scene: Scene) -> Scene:
     if arrivals is not None and len(arrivals.t):
         arrivals = replace(arrivals, t=arrivals.t - arrivals.t[0])
     feeds = tuple(replace(one, begin=0.0) for one in traffic.feeds)
-    return replace(scene, traffic=replace(traffic, feeds=feeds, arrivals=arrivals))
+    return replace(scene, traffic=replace(traffic, feeds=feeds, arrivals=arrivals, interval=_STEPS))
