@@ -45,3 +45,20 @@ def test_the_doctor_says_when_the_cache_cannot_be_written(
     found = dict(doctor.diagnosis())["cache"]
     assert found.startswith("no permission to write to")
     assert "RYUSA_CACHE" in found
+
+
+def test_the_doctor_says_what_the_cache_holds_what_is_damaged_and_what_else_is_asked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    own = store.Store(tmp_path / "own", store.own().processor)
+    shipped = store.Store(tmp_path / "shipped", own.processor, writable=False, trouble="shipped: unreadable")
+    monkeypatch.setattr(store, "own", lambda: own)
+    monkeypatch.setattr(store, "tiers", lambda: (own, shipped))
+    about = {"name": "a.b", "kind": "entry", "seconds": 1.0, "processor": "any"}
+    for key in ("ab" * 32, "cd" * 32):
+        own.save(key, about, b"code")
+    next(own.listed()).file.write_bytes(b"cut")
+    found = dict(doctor.diagnosis())["cache"]
+    assert found.startswith(f"{own.folder}, writable, 0 MiB of compiled code in 2 files")
+    assert "1 files are damaged" in found
+    assert f"{shipped.folder} is asked too; shipped: unreadable" in found

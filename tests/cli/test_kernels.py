@@ -50,6 +50,11 @@ def test_a_store_that_is_only_read_and_one_in_trouble_are_told(kept, monkeypatch
     )
 
 
+def test_the_help_says_what_is_removed_by_itself():
+    text = asked("kernels", "--help").output
+    assert f"{store.UNUSED_DAYS} days" in text and f"{store.LARGEST // 2**20} MiB" in text
+
+
 def test_the_store_is_emptied(kept):
     done = asked("kernels", "clear")
     assert done.exit_code == 0 and f"{kept.folder}: 5 files removed, 0.0 MiB" in done.output

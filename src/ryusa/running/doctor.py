@@ -12,6 +12,8 @@ from ryusa.compiled.shipped import shipped
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
 
+_LEAST_ROOM = 2**20  # bytes on the disk of compiled code, more than any file of it
+
 # Widest first; the widest that the processor has is reported.
 _VECTORS = (("avx512f", "AVX-512"), ("avx2", "AVX2"), ("avx", "AVX"), ("neon", "NEON"), ("sse2", "SSE2"))
 
@@ -49,17 +51,26 @@ def _vectors() -> str:
 
 
 def _cache() -> str:
-    """Folder of compiled code, and whether it can be written."""
+    """Folder of compiled code: whether it can be written, what it holds, and what else is asked."""
     kept = store.own()
     advice = "so that every process compiles again. Set RYUSA_CACHE to a folder that you can write"
     try:
         kept.folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=kept.folder):
-            pass
+        with tempfile.TemporaryFile(dir=kept.folder) as file:
+            file.write(b"0" * _LEAST_ROOM)
     except OSError as error:
         return f"no permission to write to {kept.folder} ({error.strerror}), {advice}"
     files, size = kept.size()
-    return f"{kept.folder}, writable, {size / 2**20:.0f} MiB of compiled code in {files} files"
+    damaged = files - sum(1 for _ in kept.listed())
+    return "; ".join(
+        [
+            f"{kept.folder}, writable, {size / 2**20:.0f} MiB of compiled code in {files} files "
+            "(ryusa kernels lists it)",
+            *([f"{damaged} files are damaged and are compiled anew when they are needed"] if damaged else []),
+            *(f"{one.folder} is asked too" for one in store.tiers() if one.folder != kept.folder),
+            *(one.trouble for one in store.tiers() if one.trouble),
+        ]
+    )
 
 
 def _engine(name: str) -> str:
