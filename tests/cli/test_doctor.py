@@ -47,7 +47,7 @@ def test_the_doctor_says_when_the_cache_cannot_be_written(
     assert "RYUSA_CACHE" in found
 
 
-def test_the_doctor_says_what_the_cache_holds_what_is_damaged_and_what_else_is_asked(
+def test_the_doctor_says_what_the_cache_holds_what_is_damaged_and_what_cannot_be_read(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
     own = store.Store(tmp_path / "own", store.own().processor)
@@ -61,4 +61,4 @@ def test_the_doctor_says_what_the_cache_holds_what_is_damaged_and_what_else_is_a
     found = dict(doctor.diagnosis())["cache"]
     assert found.startswith(f"{own.folder}, writable, 0 MiB of compiled code in 2 files")
     assert "1 files are damaged" in found
-    assert f"{shipped.folder} is asked too; shipped: unreadable" in found
+    assert found.endswith("; shipped: unreadable")

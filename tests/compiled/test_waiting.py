@@ -80,6 +80,24 @@ def test_what_will_be_called_counts_as_left_unless_it_is_in_the_store(folder):
     assert names[2] == {"entry other"}
 
 
+def test_what_comes_with_a_package_does_not_count_as_left(folder, monkeypatch):
+    inside, other, outside = make()
+    inside(1.0)
+    outside(1.0, None)
+    package = store.Store(folder, processor.own(), writable=False)
+    empty = store.Store(folder / "own", processor.own())
+    monkeypatch.setattr(store, "own", lambda: empty)
+    monkeypatch.setattr(store, "tiers", lambda: (empty, package))
+    waiting._packaged.cache_clear()
+    left: list[set[str]] = []
+    new, _, again = make()
+    expected = {f"entry {again.name}": 1.0, f"entry {new.name}": 1.0, "piece not.yet.made": 3.0}
+    with waiting.told(lambda _: left.append({str(one) for one in waiting._now.left}), expected):
+        other(1.0)
+    waiting._packaged.cache_clear()
+    assert left[0] == {str(("entry", other)), "piece not.yet.made"}
+
+
 def test_seconds_outlast_a_change_of_the_function_and_an_empty_store(folder):
     outside = make()[2]
     outside(2.0, None)

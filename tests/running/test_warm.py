@@ -42,6 +42,7 @@ print(waiting.done().since(before).functions)
 """
 
 
+@pytest.mark.full
 def test_a_run_after_it_compiles_nothing(tmp_path):
     """In the store of all tests, where most is there: to compile anew takes long."""
     case = tmp_path / "case.toml"

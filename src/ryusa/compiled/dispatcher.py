@@ -73,6 +73,7 @@ class _Kept:
             "name": function.name,
             "kind": self._kind,
             "seconds": round(waiting.own_seconds(), 3),
+            "content": function.content[: waiting.DIGITS],
             "processor": processor.own().name,
         }
         store.own().save(key, about, serialize.dumps(parts))

@@ -41,7 +41,8 @@ class Kept:
     ----------
     file : where.
     about : name, kind (`inner` is built into other code, `piece` is called by address, `entry` from
-        Python), seconds of processor time that compiling took without what it calls, processor.
+        Python), seconds of processor time that compiling took without what it calls, processor, the first
+        digits of its content.
     size : bytes on disk.
     used : when it was last read or written [s since 1970], to a day.
     """

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 # Seconds for each byte of a function's bytecode and of all that it may call, as the saltation case took on
 # one core of an AMD EPYC (Zen 5): with half of the functions that the text names not needed.
 _A_BYTE = {"inner": (0.09e-3, 0.0), "entry": (0.25e-3, 0.02e-3), "piece": (0.25e-3, 0.02e-3)}
+DIGITS = 16  # of a content that tell it from all others
 _UNSURE = 2.0  # seconds that must have been compiled before their pace counts for as much as the record
 
 _Key = tuple[str, "Compiled"]  # kind (`entry`, `piece` or `inner`) and function
@@ -191,6 +192,8 @@ def _plan(key: _Key) -> None:
         for named, seconds in expected.items():
             kind, _, name = named.partition(" ")
             if (made := latest.get(name)) is None:  # it will be made for a kind of case
+                if named in _packaged():
+                    continue
                 _now.left[named] = _record().by_name.get(f"whole {named}", seconds)
             elif (other := (kind, made)) not in _now.met and not _remembered(other):
                 _expect(other)
@@ -235,14 +238,21 @@ def _reach(function: "Compiled") -> dict["Compiled", None]:
 
 def _content(key: _Key) -> list[str]:
     try:
-        return [f"{key[0]} {key[1].content[:16]}"]
+        return [f"{key[0]} {key[1].content[:DIGITS]}"]
     except UnknownContentError:
         return []
 
 
 def _remembered(key: _Key) -> bool:
-    """Whether a function has been compiled here as it is."""
-    return any(one in _record().contents for one in _content(key))
+    """Whether a function has been compiled here as it is, or comes with a package."""
+    return any(one in _record().contents or one in _packaged() for one in _content(key))
+
+
+@cache
+def _packaged() -> frozenset[str]:
+    """Kinds with names and with contents of the code that is only read."""
+    found = [one.about for tier in store.tiers() if not tier.writable for one in tier.listed()]
+    return frozenset(f"{one['kind']} {one.get(part, '')}" for one in found for part in ("name", "content"))
 
 
 def _record() -> Seconds:

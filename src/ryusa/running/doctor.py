@@ -51,7 +51,7 @@ def _vectors() -> str:
 
 
 def _cache() -> str:
-    """Folder of compiled code: whether it can be written, what it holds, and what else is asked."""
+    """Folder of compiled code: whether it can be written, what it holds, and what is wrong with it."""
     kept = store.own()
     advice = "so that every process compiles again. Set RYUSA_CACHE to a folder that you can write"
     try:
@@ -67,7 +67,6 @@ def _cache() -> str:
             f"{kept.folder}, writable, {size / 2**20:.0f} MiB of compiled code in {files} files "
             "(ryusa kernels lists it)",
             *([f"{damaged} files are damaged and are compiled anew when they are needed"] if damaged else []),
-            *(f"{one.folder} is asked too" for one in store.tiers() if one.folder != kept.folder),
             *(one.trouble for one in store.tiers() if one.trouble),
         ]
     )
