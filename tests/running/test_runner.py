@@ -443,7 +443,7 @@ def test_a_run_separates_compiling_from_running(
     go: Any, engine: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wall = [0.0]
-    monkeypatch.setattr(waiting, "done", lambda: waiting.Done(1, 1, wall[0]))
+    monkeypatch.setattr(waiting, "done", lambda: waiting.Done(1, wall[0]))
     results = go(progress=True, stop=Stop(time=1e-3))
     assert results.summary["compiled"] == 0.0 and "compil" not in capsys.readouterr().err
 

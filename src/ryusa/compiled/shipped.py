@@ -111,7 +111,7 @@ def shipped() -> Shipped:
     """The installed package, and whether its code fits this process."""
     found = importlib.util.find_spec(PACKAGE)
     if found is None or not found.submodule_search_locations:
-        return Shipped(None, "package ryusa-kernels is absent, the first run of a case compiles (a minute)")
+        return Shipped(None, "package ryusa-kernels is absent, the first run of a case compiles")
     return opened(Path(found.submodule_search_locations[0]))
 
 
