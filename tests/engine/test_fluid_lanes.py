@@ -11,7 +11,7 @@ from ryusa.engine.cpu.fluid_forces import make_forces_in_column, make_forces_in_
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
 from ryusa.engine.shared.layout import aligned
-from ryusa.engine.shared.variant import LawChoice, WaterLaws
+from ryusa.engine.shared.variant import FluidLaws, LawChoice
 from ryusa.laws.families import Above, Buoyancy, Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import N_SAMPLED, PHI, SUBMERGED
 
@@ -58,7 +58,7 @@ def grains():
 
 
 def laws_of(choice):
-    return WaterLaws(*(getattr(choice, name) for name in WaterLaws._fields))
+    return FluidLaws(*(getattr(choice, name) for name in FluidLaws._fields))
 
 
 def in_column(choice, c, v, w, m, m_bare, fluid, batch):

@@ -62,7 +62,7 @@ def test_grains_pass_through_a_turning_tube_and_the_account_closes(whole: Result
     rows = whole.passages
     entered, left = (int(np.sum(rows["way"] == way)) for way in (IN, OUT))
     assert entered == 60
-    assert 30 < left < 60
+    assert 30 < left <= 60
     n = np.isfinite(whole.frames.x[:][:, :, 0]).sum(axis=1)
     steps = np.asarray(whole.frames.step)
     came = [np.sum((rows["way"] == IN) & (rows["step"] <= one)) for one in steps]

@@ -9,6 +9,7 @@ import hashlib
 import importlib.util
 import json
 import os
+import sys
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -130,13 +131,13 @@ def refusal(manifest: Manifest) -> str:
     """Why the code of a package is not used in this process; empty where it is."""
     from numba.core import config
 
-    from ryusa import __version__
+    version = sys.modules["ryusa"].__version__  # of the package that holds this one
 
     made, own = Processor(*manifest.processor), processor.own()
     if os.environ.get(SWITCH) == "native":
         return f"{SWITCH}=native, code is compiled for this processor"
-    if manifest.ryusa != __version__:
-        return f"made for ryusa {manifest.ryusa}, this is {__version__}"
+    if manifest.ryusa != version:
+        return f"made for ryusa {manifest.ryusa}, this is {version}"
     here = processor.versions()
     if manifest.versions != here:
         differ = set(manifest.versions) ^ set(here)

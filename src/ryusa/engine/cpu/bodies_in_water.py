@@ -11,14 +11,14 @@ from typing import Any
 from ryusa.engine.cpu.body_lanes import BodyLanes
 from ryusa.engine.cpu.fluid_forces import make_forces_in_column, make_forces_in_profile
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.variant import WaterLaws
+from ryusa.engine.shared.variant import FluidLaws
 from ryusa.laws.rigid_body import spin
 from ryusa.model.fluid import EXTRA_X, EXTRA_Z, N_IMPULSE, N_SAMPLED, SUBMERGED
 from ryusa.model.rigid_bodies import N_DRAG_FORM
 
 
 @cache
-def make_forces_on_bodies(column: bool, laws: WaterLaws) -> Any:
+def make_forces_on_bodies(column: bool, laws: FluidLaws) -> Any:
     """Build forces_on_bodies(begin, end, c, fluid, bodies, lanes, batch) for the water that a scene has."""
     in_column: Any = make_forces_in_column(laws, True) if column else None
     in_profile: Any = None if column else make_forces_in_profile(laws, True)

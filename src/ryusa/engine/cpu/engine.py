@@ -270,19 +270,14 @@ class CpuEngine:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
             pieces, held = self._pieces(), [self._held(k) for k in range(threads)]
-            shared = (
-                threads, n_steps, self._step, self._travel, film_reach(layout.scene), np.zeros(1, np.int64),
-                pieces,
-            )  # fmt: skip
-            more = (layout.walls.faces, self._bodies)
+            reach, count, faces = film_reach(layout.scene), np.zeros(1, np.int64), layout.walls.faces
+            shared = (threads, n_steps, self._step, self._travel, reach, count, pieces)
+            own = [(one, faces, self._bodies, self._work[k]) for k, one in enumerate(held)]
+            schedule = self._candidates.schedule
             others = [
-                self._pool.submit(run, k, *shared, held[k], *more, self._work[k], self._candidates.schedule)
-                for k in range(1, threads)
-                if self._pool
+                self._pool.submit(run, k, *shared, *own[k], schedule) for k in range(1, threads) if self._pool
             ]
-            done, self._travel, stop = run(
-                0, *shared, held[0], *more, self._work[0], self._candidates.schedule
-            )
+            done, self._travel, stop = run(0, *shared, *own[0], schedule)
             for other in others:
                 other.result()
             self._step += done

@@ -14,7 +14,7 @@ from ryusa.engine.cpu.simd.vec4 import copy4, read4, vec4_of, write4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import STRESS, height_in_profile, length
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.variant import WaterLaws
+from ryusa.engine.shared.variant import FluidLaws
 from ryusa.laws._family import Family, lanes_of_law
 from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
 from ryusa.laws.families import Drag, DragOfForm, Hindrance, Lift, Magnus, Profile, WaterTorque
@@ -206,7 +206,7 @@ def _clear(first: int, rows: int, batch: Any) -> None:
 
 
 @cache
-def make_forces_in_column(laws: WaterLaws, bodies: bool) -> Any:
+def make_forces_in_column(laws: FluidLaws, bodies: bool) -> Any:
     """Build forces_in_column for laws by number; of rigid bodies, with the drag of their form."""
     drag, lift, magnus, torque = laws.drag, laws.lift, laws.magnus, laws.torque
     stress = laws.buoyancy == STRESS
@@ -265,7 +265,7 @@ def make_forces_in_column(laws: WaterLaws, bodies: bool) -> Any:
 
 
 @cache
-def make_forces_in_profile(laws: WaterLaws, bodies: bool) -> Any:
+def make_forces_in_profile(laws: FluidLaws, bodies: bool) -> Any:
     """As `make_forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
     drag, torque, above = laws.drag, laws.torque, laws.above
     profile_lanes, torque_lanes = (
@@ -305,7 +305,7 @@ def make_forces_in_profile(laws: WaterLaws, bodies: bool) -> Any:
     return forces_in_profile
 
 
-def _drag_lanes(laws: WaterLaws, bodies: bool) -> tuple[bool, Any]:
+def _drag_lanes(laws: FluidLaws, bodies: bool) -> tuple[bool, Any]:
     """Whether drag coefficients are those of forms of rigid bodies, and their loop over lanes."""
     if bodies and DragOfForm(laws.drag_of_form) is not DragOfForm.SPHERE:
         return True, _lanes(DragOfForm(laws.drag_of_form), _OF_FORM)
@@ -313,7 +313,7 @@ def _drag_lanes(laws: WaterLaws, bodies: bool) -> tuple[bool, Any]:
 
 
 @cache
-def make_forces_of_water(column: bool, laws: WaterLaws) -> Any:
+def make_forces_of_water(column: bool, laws: FluidLaws) -> Any:
     """Build forces_of_water(lo, hi, c, grains, batch) for the water that a scene has."""
     in_column: Any = make_forces_in_column(laws, False) if column else None
     in_profile: Any = None if column else make_forces_in_profile(laws, False)

@@ -67,7 +67,7 @@ class ForcesKind(NamedTuple):
     rebound: int  # restitution depends on the water at touch
 
 
-class WaterLaws(NamedTuple):
+class FluidLaws(NamedTuple):
     """Laws of the water by number (laws.families); each is compiled, the others of its family are not."""
 
     profile: int
@@ -91,7 +91,7 @@ class MotionKind(NamedTuple):
     bodies: int
     water: int
     column: int
-    laws: WaterLaws
+    laws: FluidLaws
 
 
 class LawChoice(NamedTuple):
@@ -174,7 +174,7 @@ def forces_kind(variant: KernelVariant, choice: LawChoice) -> ForcesKind:
 
 def motion_kind(variant: KernelVariant, choice: LawChoice) -> MotionKind:
     """Motion of grains that this variant needs."""
-    laws = WaterLaws(*(getattr(choice, name) if variant.water else 0 for name in WaterLaws._fields))
+    laws = FluidLaws(*(getattr(choice, name) if variant.water else 0 for name in FluidLaws._fields))
     if not variant.rotation:
         laws = laws._replace(torque=0)
     return MotionKind(
