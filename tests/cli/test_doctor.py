@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.compiled import store
+from ryusa.compiled import store, tiers
 from ryusa.engine.cuda import availability
 from ryusa.running import doctor
 
@@ -53,7 +53,7 @@ def test_the_doctor_says_what_the_cache_holds_what_is_damaged_and_what_cannot_be
     own = store.Store(tmp_path / "own", store.own().processor)
     shipped = store.Store(tmp_path / "shipped", own.processor, writable=False, trouble="shipped: unreadable")
     monkeypatch.setattr(store, "own", lambda: own)
-    monkeypatch.setattr(store, "tiers", lambda: (own, shipped))
+    monkeypatch.setattr(tiers, "in_order", lambda: (own, shipped))
     about = {"name": "a.b", "kind": "entry", "seconds": 1.0, "processor": "any"}
     for key in ("ab" * 32, "cd" * 32):
         own.save(key, about, b"code")

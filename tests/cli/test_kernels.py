@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from ryusa.cases import case_path
 from ryusa.cli import app
-from ryusa.compiled import processor, store
+from ryusa.compiled import processor, store, tiers
 from ryusa.compiled.waiting import Done
 from ryusa.running import warm
 
@@ -17,7 +17,7 @@ def kept(tmp_path, monkeypatch):
     """A store with two types of one entry, a piece and two functions built into them."""
     own = store.Store(tmp_path / "kernels", processor.own())
     monkeypatch.setattr(store, "own", lambda: own)
-    monkeypatch.setattr(store, "tiers", lambda: (own,))
+    monkeypatch.setattr(tiers, "in_order", lambda: (own,))
     names = ("prune.prune_blocks", "prune.prune_blocks", "block_forces.make[kind].forces", "a.one", "a.two")
     kinds = ("entry", "entry", "piece", "inner", "inner")
     for k, (name, kind) in enumerate(zip(names, kinds, strict=True)):
@@ -43,7 +43,7 @@ def test_the_store_is_listed_by_function_with_totals(kept):
 
 def test_a_store_that_is_only_read_and_one_in_trouble_are_told(kept, monkeypatch, tmp_path):
     closed = store.Store(tmp_path / "shipped", processor.own(), writable=False, trouble="no disk")
-    monkeypatch.setattr(store, "tiers", lambda: (kept, closed))
+    monkeypatch.setattr(tiers, "in_order", lambda: (kept, closed))
     lines = asked("kernels").output.splitlines()
     assert (
         lines[-2].startswith(f"{closed.folder}, only read: 0 functions") and lines[-1] == "warning: no disk"

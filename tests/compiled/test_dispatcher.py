@@ -10,7 +10,7 @@ import pytest
 
 import ryusa.compiled
 import ryusa.laws
-from ryusa.compiled import processor, store
+from ryusa.compiled import processor, store, tiers
 from ryusa.compiled.dispatcher import _Kept, _of_type
 from ryusa.compiled.function import FAST, compiled
 from ryusa.laws import collision
@@ -172,7 +172,7 @@ def test_functions_of_one_name_and_other_closures_are_told_apart():
 def test_what_python_calls_and_what_kernels_call_do_not_depend_on_the_order(tmp_path, monkeypatch):
     empty = store.Store(tmp_path, processor.own())
     monkeypatch.setattr(store, "own", lambda: empty)
-    monkeypatch.setattr(store, "tiers", lambda: (empty,))
+    monkeypatch.setattr(tiers, "in_order", lambda: (empty,))
 
     @compiled(fastmath=FAST)
     def inmost(x):

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from ryusa.compiled import processor, store, waiting
+from ryusa.compiled import processor, store, tiers, waiting
 from ryusa.compiled.function import compiled
 from ryusa.compiled.seconds import Seconds
 
@@ -16,7 +16,7 @@ def folder(tmp_path, monkeypatch):
     """A store without anything in it."""
     empty = store.Store(tmp_path, processor.own())
     monkeypatch.setattr(store, "own", lambda: empty)
-    monkeypatch.setattr(store, "tiers", lambda: (empty,))
+    monkeypatch.setattr(tiers, "in_order", lambda: (empty,))
     return tmp_path
 
 
@@ -87,7 +87,7 @@ def test_what_comes_with_a_package_does_not_count_as_left(folder, monkeypatch):
     package = store.Store(folder, processor.own(), writable=False)
     empty = store.Store(folder / "own", processor.own())
     monkeypatch.setattr(store, "own", lambda: empty)
-    monkeypatch.setattr(store, "tiers", lambda: (empty, package))
+    monkeypatch.setattr(tiers, "in_order", lambda: (empty, package))
     waiting._packaged.cache_clear()
     left: list[set[str]] = []
     new, _, again = make()

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from ryusa.compiled import processor, store, waiting
+from ryusa.compiled import processor, store, tiers, waiting
 from ryusa.compiled.function import compiled, latest
 from ryusa.running import compiling
 from ryusa.running.compiling import compiling_told, expected_of, words_of
@@ -69,7 +69,7 @@ def test_a_thread_looks_while_a_function_is_compiled_and_ends_with_the_run(tmp_p
     monkeypatch.setattr(compiling, "_LOOK", 0.001)
     empty = store.Store(tmp_path, processor.own())
     monkeypatch.setattr(store, "own", lambda: empty)
-    monkeypatch.setattr(store, "tiers", lambda: (empty,))
+    monkeypatch.setattr(tiers, "in_order", lambda: (empty,))
     stream = io.StringIO()
     progress = Progress(tmp_path / "log.txt", shown=True, stream=stream)
 

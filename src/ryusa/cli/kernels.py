@@ -36,13 +36,13 @@ def kernels(
     A run compiles each function that it needs once for this processor, and keeps it for all that follow.
     Code that was not used for 90 days is removed, and beyond 512 MiB what was not used for longest.
     """
-    from ryusa.compiled import store
+    from ryusa.compiled import store, tiers
 
     if action is not None:
         known_word(action, ("clear",), "ACTION")
         typer.echo(_cleared(store.own()))
         return
-    for k, tier in enumerate(store.tiers()):
+    for k, tier in enumerate(tiers.in_order()):
         if k:
             typer.echo()
         _print(tier)

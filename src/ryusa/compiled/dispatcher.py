@@ -8,7 +8,7 @@ from numba.core import types as numba_types
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-from ryusa.compiled import processor, store, waiting
+from ryusa.compiled import processor, store, tiers, waiting
 from ryusa.compiled.content import UnknownContentError, digest_of
 from ryusa.compiled.numba_parts import (
     InnerPipeline,
@@ -47,7 +47,7 @@ class _Kept:
     def load_overload(self, signature: Any, context: Any) -> Any:
         """What the store has for these types; None where it is to be compiled."""
         rebuild = inner_of if self._kind == "inner" else entry_of
-        for tier in store.tiers():
+        for tier in tiers.in_order():
             key = self.key(signature, tier.processor)
             data = tier.load(key) if key else None
             if data is None:

@@ -188,12 +188,3 @@ def folder() -> Path:
 def own() -> Store:
     """The store of this user."""
     return Store(folder(), own_processor())
-
-
-@cache
-def tiers() -> tuple[Store, ...]:
-    """The stores that are asked for code, in their order: the user's, and what comes as a package."""
-    from ryusa.compiled.shipped import shipped
-
-    package = shipped().store
-    return (own(),) if package is None else (own(), package)

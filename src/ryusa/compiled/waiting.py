@@ -15,7 +15,7 @@ from itertools import zip_longest
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ryusa.compiled import store
+from ryusa.compiled import store, tiers
 from ryusa.compiled.content import UnknownContentError
 from ryusa.compiled.seconds import Seconds
 
@@ -251,7 +251,7 @@ def _remembered(key: _Key) -> bool:
 @cache
 def _packaged() -> frozenset[str]:
     """Kinds with names and with contents of the code that is only read."""
-    found = [one.about for tier in store.tiers() if not tier.writable for one in tier.listed()]
+    found = [one.about for tier in tiers.in_order() if not tier.writable for one in tier.listed()]
     return frozenset(f"{one['kind']} {one.get(part, '')}" for one in found for part in ("name", "content"))
 
 

@@ -7,7 +7,7 @@ import tempfile
 from typing import Any
 
 from ryusa import __version__
-from ryusa.compiled import store
+from ryusa.compiled import store, tiers
 from ryusa.compiled.shipped import shipped
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
@@ -67,7 +67,7 @@ def _cache() -> str:
             f"{kept.folder}, writable, {size / 2**20:.0f} MiB of compiled code in {files} files "
             "(ryusa kernels lists it)",
             *([f"{damaged} files are damaged and are compiled anew when they are needed"] if damaged else []),
-            *(one.trouble for one in store.tiers() if one.trouble),
+            *(one.trouble for one in tiers.in_order() if one.trouble),
         ]
     )
 
