@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from ryusa.compiled import processor, store, tiers, waiting
-from ryusa.compiled.function import compiled, latest
+from ryusa.compiled.content import latest
+from ryusa.compiled.function import compiled
 from ryusa.running import compiling
 from ryusa.running.compiling import compiling_told, expected_of, words_of
 from ryusa.running.progress import Progress

@@ -17,6 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
+from weakref import WeakValueDictionary
 
 # Modules below these are covered by the versions in a key (store.py), so that a name says it all.
 _VERSIONED = (
@@ -32,6 +33,9 @@ _VERSIONED = (
 )
 _LOAD_GLOBAL = dis.opmap["LOAD_GLOBAL"]
 _PLAIN = (bool, int, str, bytes, type(None), type(Ellipsis))
+
+
+latest: WeakValueDictionary[str, Any] = WeakValueDictionary()  # of each name, the function made last
 
 
 class UnknownContentError(TypeError):

@@ -5,13 +5,11 @@ from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
 from typing import Any, TypeVar, cast
-from weakref import WeakValueDictionary
 
-from ryusa.compiled.content import UnknownContentError, content_of
+from ryusa.compiled.content import UnknownContentError, content_of, latest
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-latest: WeakValueDictionary[str, "Compiled"] = WeakValueDictionary()  # of each name, the one made last
 FAST = {"contract", "nsz"}  # fused multiply-add, sign of zero ignored; no flag that hides a NaN
 
 

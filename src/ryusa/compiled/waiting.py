@@ -16,7 +16,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ryusa.compiled import store, tiers
-from ryusa.compiled.content import UnknownContentError
+from ryusa.compiled.content import UnknownContentError, latest
 from ryusa.compiled.seconds import Seconds
 
 if TYPE_CHECKING:
@@ -183,8 +183,6 @@ def _tell(name: str | None) -> None:
 
 def _plan(key: _Key) -> None:
     """Expect a function that is compiled and what it calls; with an outermost one what else will be."""
-    from ryusa.compiled.function import latest
-
     _expect(key)
     if len(_now.open) > 1:
         return
