@@ -11,7 +11,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 from numba.core import bytecode
-from numba.core.codegen import JITCodeLibrary
+from numba.core.codegen import JITCodeLibrary, _parse_refprune_flags
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.targetconfig import TargetConfig
 
@@ -22,7 +22,27 @@ _RARELY = 50_000, 20, 100  # thresholds of the garbage collector: a compiler mak
 
 
 class InlinedLibrary(JITCodeLibrary):
-    """Code that is only ever built into other code: optimised, but without machine code of its own."""
+    """Code that is only ever built into other code: simplified, without machine code of its own.
+
+    The rest is left to the code that it is built into, which is optimised as a whole. LLVM's higher levels
+    would do harm here: they make a branch of the choice of one of two numbers, and a loop with such branches
+    does not become vector instructions. Stock Numba escapes it by chance: emission undoes some of it.
+    """
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+        builder = self._codegen._pass_builder(opt=1)
+        passes = builder.getFunctionPassManager()
+        passes.add_refprune_pass(_parse_refprune_flags())
+        for function in ll_module.functions:
+            passes.run(function, builder)
+
+    def _optimize_final_module(self) -> None:
+        """Build in what the functions call."""
+        builder = self._codegen._pass_builder(opt=0, loop_vectorize=False, slp_vectorize=False)
+        passes = builder.getModulePassManager()
+        passes.add_refprune_pass(_parse_refprune_flags())
+        passes.run(self._final_module, builder)
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()

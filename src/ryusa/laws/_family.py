@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any, Self, TypeVar, cast
 
 from ryusa.compiled.function import compiled_law
+from ryusa.compiled.lanes import known_lanes
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -146,14 +147,14 @@ def lanes_of_law(choice: Family, arguments: tuple[str, ...], read: Any, write: A
     choice, arguments : the law, and the names of the arguments of its family, in order.
     read : compiled; read(lane, batch, shared) returns all arguments, in order.
     write : compiled; write(lane, batch, answer) keeps what the law answers.
-    lanes : the most there are; the loop is over the first m.
+    lanes : the most there are, a power of two; the loop is over the first m, 1 or more.
     """
     law: Any = choice.function
     pick = _picker(tuple(map(arguments.index, _asked_by(choice, arguments))), False)
 
     @_link_of(False, f"{type(choice).__name__}.{choice.name}")
     def loop(m: Any, batch: Any, shared: Any) -> None:
-        for lane in range(min(m, lanes)):  # never more: the compiler has to know
+        for lane in range(known_lanes(m, lanes)):
             write(lane, batch, law(*pick(read(lane, batch, shared))))
 
     return loop

@@ -20,9 +20,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws._law import law
 from ryusa.laws.slices import sphere_slice
 from ryusa.model.scene import Floats
+from ryusa.water._kernel import kernel
 
 Ints = NDArray[np.int64]
 Share = Literal["whole", "submerged"]
@@ -301,7 +301,7 @@ def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
     return (table[:, None], True) if table.ndim == 1 else (table, False)
 
 
-@law  # compiled as a law is, like the three below: a loop over arrays that calls laws
+@kernel
 def cut_grains(
     z: Floats, r: Floats, z_low: float, dz: float, n: int,
     first: Ints, count: Ints, volume: Floats, whole: Floats, submerged: Floats, below: Floats, above: Floats,
@@ -326,7 +326,7 @@ def cut_grains(
         above[i] = max(sphere_slice(r[i], z_low + n * dz - z[i], r[i]), 0.0)
 
 
-@law
+@kernel
 def factors_in_water(whole: Floats, submerged: Floats) -> tuple[Floats, Floats]:
     """Factors that turn volumes of a grain into shares of its submerged part, in cells and outside [1/m3]."""
     n = len(whole)
@@ -339,7 +339,7 @@ def factors_in_water(whole: Floats, submerged: Floats) -> tuple[Floats, Floats]:
     return per, outer
 
 
-@law
+@kernel
 def add_to_cells(
     order: Ints, first: Ints, count: Ints, volume: Floats, below: Floats, above: Floats,
     per: Floats, outer: Floats, amounts: Floats, sums: Floats, outside: Floats,
@@ -358,7 +358,7 @@ def add_to_cells(
                 outside[c, 1] += amounts[i, c] * outer[i] * above[i]
 
 
-@law
+@kernel
 def mean_over_grains(
     first: Ints, count: Ints, volume: Floats, per: Floats, table: Floats, out: Floats
 ) -> None:

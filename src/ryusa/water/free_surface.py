@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.laws._law import law
 from ryusa.laws.slices import sphere_slice
 from ryusa.model.scene import Floats
+from ryusa.water._kernel import kernel
 from ryusa.water.exchange import Ints, Slices
 
 
@@ -45,7 +45,7 @@ def submerged_part(cut: Slices, z: Floats, d: Floats, surface: float) -> Slices:
     return replace(cut, count=count, volume=volume, submerged=submerged, above=above)
 
 
-@law  # compiled as a law is: a loop over arrays that calls laws
+@kernel
 def cut_at_surface(
     out: Ints, z: Floats, r: Floats, z_low: float, dz: float, surface: float,
     first: Ints, count: Ints, volume: Floats, submerged: Floats, above: Floats,

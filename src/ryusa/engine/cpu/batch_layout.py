@@ -6,7 +6,7 @@ that they are filled and emptied by whole vectors; rows hold one double a pair. 
 read them as constants. A loop reads all four of a group or none: else it would have to end in single lanes.
 """
 
-LANES = 32  # pairs in a batch
+LANES = 32  # pairs in a batch, a power of two
 PITCH = (
     LANES + 8
 )  # between rows: with a power of two all rows would fall into the same few places of the cache

@@ -9,6 +9,7 @@ import math
 from functools import cache
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import (
@@ -140,7 +141,7 @@ def _make_begin(plane: bool, mixed: bool) -> Any:
     def begin(n: int, rotates: bool, rules: Any, c: Any, batch: Any) -> None:
         """Begin the contacts of the first n event lanes."""
         alike, cohesion = (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c[P.COHESION]
-        for e in range(min(n, B.LANES)):
+        for e in range(known_lanes(n, B.LANES)):
             m_n, m_t = _masses(e, rotates, batch)
             law = _springs(e, cohesion, batch) if mixed else alike
             at = B.EVENT - B.OVERLAP + e
@@ -159,7 +160,7 @@ def _make_end(plane: bool, mixed: bool) -> Any:
     def end(n: int, rotates: bool, rules: Any, tension: bool, c: Any, batch: Any) -> None:
         """End the contacts of the first n event lanes, or let them go on."""
         alike, cohesion = (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c[P.COHESION]
-        for e in range(min(n, B.LANES)):
+        for e in range(known_lanes(n, B.LANES)):
             m_n, m_t = _masses(e, rotates, batch)
             law = _springs(e, cohesion, batch) if mixed else alike
             at = B.EVENT - B.OVERLAP + e

@@ -3,6 +3,7 @@
 
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.faces import N_MET
 from ryusa.engine.cpu.simd.vec4 import copy4, difference4
@@ -50,7 +51,7 @@ def mark_within_cutoff(
 ) -> None:
     """Set `inside` to 1 where one of the first m lanes is nearer than `reach_on` [m] beyond touch, else 0."""
     l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
-    for l in range(min(m, B.LANES)):
+    for l in range(known_lanes(m, B.LANES)):
         d_x, d_z, reach = (
             wrap(separation[4 * l], l_x),
             separation[4 * l + 2],
@@ -84,7 +85,7 @@ def mark_approaching(
     Between `past` seconds ago and `ahead` seconds from now, each grain keeping the velocity it has.
     """
     l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
-    for l in range(min(m, B.LANES)):
+    for l in range(known_lanes(m, B.LANES)):
         d_x, d_y, d_z = wrap(separation[4 * l], l_x), 0.0, separation[4 * l + 2]
         u_x, u_y, u_z = velocity[4 * l], 0.0, velocity[4 * l + 2]
         reach = separation[4 * l + 3] + velocity[4 * l + 3] + reach_on  # + 0: a group is read whole

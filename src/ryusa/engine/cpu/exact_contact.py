@@ -10,6 +10,7 @@ import math
 from functools import cache
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_events import make_begin_and_end
 from ryusa.engine.cpu.contact_rows import springs_of_row
@@ -41,7 +42,7 @@ def _make_kinematics(plane: bool) -> Any:
     def kinematics_of_maps(m: int, most: float, tension: bool, c: Any, batch: Any) -> None:
         """Geometry and velocities of every contact, its normal force, and what the step does with it."""
         dt, l_x, l_y = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y]
-        for l in range(min(m, B.LANES)):  # never more: the compiler has to know
+        for l in range(known_lanes(m, B.LANES)):
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
             u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
             i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
@@ -90,7 +91,7 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
     ) -> None:
         """Tangential force, the work of all; force and torques on both grains."""
         dt, mu, cohesion = c[P.DT], c[P.MU], c[P.COHESION]
-        for l in range(min(m, B.LANES)):
+        for l in range(known_lanes(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
             f_n, e_n = batch[B.F_N + l], batch[B.E_N + l]
             touching = batch[B.TOUCHING + l]

@@ -8,6 +8,7 @@ copied to the batch (fluid_layout.py), then each law runs over all lanes.
 from functools import cache
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu.arrays import GrainArrays
 from ryusa.engine.cpu.simd.vec4 import copy4, read4, vec4_of, write4
@@ -118,7 +119,7 @@ def _lanes(choice: Family, given: tuple[tuple[str, ...], Any, Any]) -> Any:
 @inner(fastmath=FAST)
 def _fill_spin(m: int, turns: bool, batch: Any) -> None:
     """Spin relative to the water, of which half the shear is the spin where `turns`."""
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         o_x, o_y, o_z = batch[W.SPIN + 4 * l], batch[W.SPIN + 4 * l + 1], batch[W.SPIN + 4 * l + 2]
         batch[W.D + l] = 2.0 * batch[W.SPIN + 4 * l + 3]
         o_y -= 0.5 * batch[W.SHEAR + l] if turns else 0.0
@@ -131,7 +132,7 @@ def _fill_spin(m: int, turns: bool, batch: Any) -> None:
 @inner(fastmath=FAST)
 def _fill_column(m: int, batch: Any) -> None:
     """Slip in a column of water, and the force of its accelerating flow."""
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         u_x, u_y, u_z = batch[W.SLIP + 4 * l], batch[W.SLIP + 4 * l + 1], batch[W.SLIP + 4 * l + 2]
         batch[W.SHEAR + l] = batch[W.SLIP + 4 * l + 3]
         batch[W.U_X + l], batch[W.U_Y + l], batch[W.U_Z + l] = u_x, u_y, u_z
@@ -146,7 +147,7 @@ def _fill_column(m: int, batch: Any) -> None:
 @inner(fastmath=FAST)
 def _fill_heights(m: int, above: int, z_zero: float, depth: float, batch: Any) -> None:
     """Where grains are in water of a given profile; the first two of a centre are read to read all four."""
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         x, y = batch[W.FLUID + 4 * l], batch[W.FLUID + 4 * l + 1]
         z, r = batch[W.FLUID + 4 * l + 2], batch[W.FLUID + 4 * l + 3]
         batch[W.HEIGHT + l], batch[W.SHARE + l] = height_in_profile(above, z, z_zero, depth)
@@ -156,7 +157,7 @@ def _fill_heights(m: int, above: int, z_zero: float, depth: float, batch: Any) -
 @inner(fastmath=FAST)
 def _fill_profile(m: int, batch: Any) -> None:
     """Slip in water of a given speed."""
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         u_x, u_y, u_z = batch[W.SLIP + 4 * l], batch[W.SLIP + 4 * l + 1], batch[W.SLIP + 4 * l + 2]
         u_x += batch[W.PROFILE + l]
         batch[W.SPEED + l] = batch[W.ALONE + l] = length(u_x, u_y, u_z)
@@ -166,7 +167,7 @@ def _fill_profile(m: int, batch: Any) -> None:
 
 @inner(fastmath=FAST)
 def _drag_over_slip(m: int, rho_w: float, a_2: float, batch: Any) -> None:
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         batch[W.K_D + l] = batch[W.SHARE + l] * drag_among_neighbours(
             batch[W.SPEED + l], batch[W.ALONE + l], batch[W.FACTOR + l], batch[W.C_D + l], rho_w, a_2,
             batch[W.D + l],
@@ -175,14 +176,14 @@ def _drag_over_slip(m: int, rho_w: float, a_2: float, batch: Any) -> None:
 
 @inner(fastmath=FAST)
 def _drag_of_isolated(m: int, rho_w: float, a_2: float, batch: Any) -> None:
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         k_d = drag_factor(batch[W.SPEED + l], batch[W.C_D + l], rho_w, a_2, batch[W.D + l])
         batch[W.K_D + l] = batch[W.SHARE + l] * k_d
 
 
 @inner(fastmath=FAST)
 def _lift_and_magnus(m: int, batch: Any) -> None:
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         u_x, u_y, u_z, share = batch[W.U_X + l], batch[W.U_Y + l], batch[W.U_Z + l], batch[W.SHARE + l]
         s_x, s_z = shear_lift_force(batch[W.NORMAL + l], batch[W.ACROSS + l], u_x, u_z)
         m_x, m_y, m_z = magnus_force(
@@ -194,7 +195,7 @@ def _lift_and_magnus(m: int, batch: Any) -> None:
 
 @inner(fastmath=FAST)
 def _torque_in_water(m: int, batch: Any) -> None:
-    for l in range(min(m, W.LANES)):
+    for l in range(known_lanes(m, W.LANES)):
         batch[W.K_T + l] *= batch[W.SHARE + l]
 
 

@@ -4,7 +4,7 @@ As in batch_layout.py: one flat array, groups of four doubles that belong to one
 grain. A loop reads all four of a group or none.
 """
 
-LANES = 64  # grains in a batch
+LANES = 64  # grains in a batch, a power of two
 PITCH = LANES + 8  # between rows
 
 # Groups of four:

@@ -9,6 +9,7 @@ import math
 from functools import cache
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import SHORT
 from ryusa.engine.shared import memory_rows as M
@@ -35,7 +36,7 @@ def _make_kinematics(plane: bool) -> Any:
     def kinematics_hertz(m: int, most: float, c: Any, batch: Any) -> None:
         """Geometry and velocities of every contact, and its normal force before the limit."""
         dt, l_x, l_y = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y]
-        for l in range(min(m, B.LANES)):  # never more: the compiler has to know
+        for l in range(known_lanes(m, B.LANES)):
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
             u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
             i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
@@ -75,7 +76,7 @@ def _make_normal(mixed: bool) -> Any:
         `least` is the least normal force that a contact can have [N].
         """
         mindlin = c[P.MINDLIN]
-        for l in range(min(m, B.LANES)):
+        for l in range(known_lanes(m, B.LANES)):
             f_n, held, touching, dashpot_n, released_n = normal_step_hertz(
                 batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], least, hdt
             )
@@ -101,7 +102,7 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
     ) -> None:
         """Tangential force, its work, the first half of the normal work; force and torques on both grains."""
         dt, mu, cohesion = c[P.DT], c[P.MU], c[P.COHESION]
-        for l in range(min(m, B.LANES)):
+        for l in range(known_lanes(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
             f_n, touching = batch[B.F_N + l], batch[B.TOUCHING + l]
             p_x, p_y, p_z = batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2]

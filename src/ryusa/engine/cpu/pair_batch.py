@@ -14,6 +14,7 @@ import math
 from functools import cache
 from typing import Any
 
+from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import dashpot_row, make_begin_row, make_lane_to_row, make_row_to_lane
 from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation, set_separation_of_any
@@ -157,7 +158,7 @@ def _make_kinematics(plane: bool) -> Any:
     def kinematics(m: int, most: float, c: Any, batch: Any) -> None:
         """Geometry and velocities of every contact, and its normal force before the limit."""
         dt, k_n, l_x, l_y = c[P.DT], c[P.K_N], c[P.PERIOD_X], c[P.PERIOD_Y]
-        for l in range(min(m, B.LANES)):  # never more: the compiler has to know
+        for l in range(known_lanes(m, B.LANES)):
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
             u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
             i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
@@ -189,7 +190,7 @@ def _make_kinematics(plane: bool) -> Any:
 def _normal_force(least: float, m: int, hdt: float, c: Any, batch: Any) -> None:
     """Normal force and the second half of its work; `least` is the least a contact can have [N]."""
     k_n = c[P.K_N]
-    for l in range(min(m, B.LANES)):
+    for l in range(known_lanes(m, B.LANES)):
         f_n, e_n, held, touching, dashpot_n, released_n, step = normal_step(
             batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.WAS_TOUCHING + l] > 0.0,
             least, k_n, hdt,
@@ -209,7 +210,7 @@ def _make_tangential(plane: bool, mixed: bool) -> Any:
         """Tangential force, its work, the first half of the normal work; force and torques on both grains."""
         dt, k_n, k_s, mu, cohesion = c[P.DT], c[P.K_N], c[P.K_S], c[P.MU], c[P.COHESION]
         soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
-        for l in range(min(m, B.LANES)):
+        for l in range(known_lanes(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
             f_n, e_n = batch[B.F_N + l], batch[B.E_N + l]
             held, touching = batch[B.HELD + l], batch[B.TOUCHING + l]

@@ -1,0 +1,57 @@
+"""The law of contact becomes vector instructions (design/0005), in the code that steps as it is compiled."""
+
+import re
+
+import numba
+import pytest
+from numba.core.caching import NullCache
+from tests.engine.conftest import D, elastic_law, pile
+
+from ryusa.build import scene
+from ryusa.compiled.dispatcher import Pieces
+from ryusa.compiled.piece import LentType
+from ryusa.engine.cpu.block_forces import make_block_forces
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.shared.variant import forces_kind
+from ryusa.laws.families import ContactTiming
+
+
+def forces_of(made) -> str:
+    """LLVM's text of the forces of contacts of a scene, compiled here and not taken from a store."""
+    engine = CpuEngine(threads=1)
+    engine.load(*made)
+    held, work = engine._held(0), engine._work[0]
+    piece = make_block_forces(forces_kind(engine._variant, engine._choice))
+    compiler = Pieces(piece, piece.pieces.targetoptions)
+    compiler._cache = NullCache()
+    integer, number, flag = numba.types.int64, numba.types.float64, numba.types.boolean
+    takes = (
+        integer, integer, integer, number, number, flag,
+        LentType(numba.typeof(work)), LentType(numba.typeof(held)),
+    )  # fmt: skip
+    compiler.compile(takes)
+    return compiler.overloads[takes].library.get_llvm_str()
+
+
+def elastic_pair():
+    centres = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.5 * D]]
+    return scene(centres, D, contact=elastic_law(), dt=1.0e-7, gravity=0.0)
+
+
+@pytest.mark.parametrize(
+    ("made", "roots"),
+    [
+        # of distances
+        pytest.param(lambda: pile(n=40, plane_case=True), 1, id="plane", marks=pytest.mark.full),
+        # and of the spring that turns with its pair, and of the size of the tangential force
+        pytest.param(lambda: pile(n=40), 3, id="space", marks=pytest.mark.full),
+        # and of contacts that begin and end within the step
+        pytest.param(lambda: pile(n=40, timing=ContactTiming.EXACT), 23, id="exact timing"),
+        # and of overlaps
+        pytest.param(elastic_pair, 9, id="Hertz", marks=pytest.mark.full),
+    ],
+)
+def test_roots_of_the_law_are_taken_by_vectors(made, roots):
+    text = forces_of(made())
+    assert len(re.findall(r"= .*call.* @llvm\.sqrt\.v\d+f64", text)) >= roots
+    assert "call void @NRT_incref" not in text  # a count of references in the loop would hinder it, too
