@@ -24,12 +24,7 @@ class PieceType(numba_types.Type):  # type: ignore[misc]
 
     def __init__(self, signature: Signature) -> None:
         self.signature = signature
-        super().__init__(name=f"Piece{signature}")
-
-    @property
-    def key(self) -> Any:
-        """What makes two of them one type."""
-        return self.signature
+        super().__init__(name=f"Piece{signature}")  # all that tells it from others: a hash that Python keeps
 
 
 class LentType(numba_types.Type):  # type: ignore[misc]
@@ -38,11 +33,6 @@ class LentType(numba_types.Type):  # type: ignore[misc]
     def __init__(self, of: Any) -> None:
         self.of = of
         super().__init__(name=f"Lent({of})")
-
-    @property
-    def key(self) -> Any:
-        """What makes two of them one type."""
-        return self.of
 
 
 register_model(PieceType)(models.OpaqueModel)

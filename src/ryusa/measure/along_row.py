@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.compiled.function import compiled
 from ryusa.errors import ResultsError
-from ryusa.laws._law import law
 from ryusa.laws.slices import sphere_slice
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.profiles import CHUNK
@@ -259,7 +259,7 @@ def _above_bottom(x: Floats, row: ColumnRow) -> tuple[Floats, Floats]:
     return x[:, 2] - (weight * below).sum(axis=1), np.asarray((grows * below).sum(axis=1))
 
 
-@law  # for its compiler: loops over arrays that call laws
+@compiled()
 def _below(levels: Floats, r: Floats, shut: Ints) -> tuple[Floats, Floats]:
     """Part of spheres below levels from their centres [m], shape (n, 3), and its derivative by the level.
 
@@ -276,7 +276,7 @@ def _below(levels: Floats, r: Floats, shut: Ints) -> tuple[Floats, Floats]:
     return below, grows
 
 
-@law
+@compiled()
 def _cut(
     z: Floats, r: Floats, solid: Floats, at: Ints, weight: Floats, shut: Ints, dz: float, sums: Floats
 ) -> None:

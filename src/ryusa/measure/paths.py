@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.compiled.function import compiled
 from ryusa.errors import ResultsError
-from ryusa.laws._law import law
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
@@ -206,7 +206,7 @@ def alternating(
     return Alternating(order, found[order], way)
 
 
-@law  # for its compiler: a loop over arrays
+@compiled()
 def _zigzag(z: Floats, threshold: Floats, turns: Floats, way: Floats) -> None:
     """Count turns that a way back by more than the threshold confirms, and the heights between them.
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.compiled.function import compiled
 from ryusa.errors import ResultsError
-from ryusa.laws._law import law
 from ryusa.laws.slices import circle_slice, sphere_slice
 from ryusa.measure._run import Above, Floats, Run, level_of, settle_time
 from ryusa.measure.snapshot import lanes_of, scene_at
@@ -236,7 +236,7 @@ def _averages(
     )
 
 
-@law  # for its compiler: a loop over arrays that calls laws
+@compiled()
 def _cut(
     z: Floats, r: Floats, solid: Floats, counted: Bools, carried: Floats, bottom: int, thickness: float,
     sums: Floats,
