@@ -14,6 +14,12 @@ settings.register_profile("random", deadline=None)  # pytest --hypothesis-profil
 settings.load_profile("ryusa")
 
 
+if os.environ.get("PYTEST_XDIST_WORKER"):  # there is a process for each core already
+    from ryusa.compiled import beside
+
+    beside.cores = lambda: 1
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--quick", action="store_true", help="without tests marked `full`, and only the kernels of make test"
@@ -36,4 +42,4 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 
         from ryusa.engine.cpu import engine
 
-        engine.pieces_of = confined(engine.pieces_of)
+        engine.PiecesOfStep = confined(engine.PiecesOfStep)

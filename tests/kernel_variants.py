@@ -47,13 +47,13 @@ def refusal(variant: KernelVariant) -> str:
     )
 
 
-def confined(pieces_of: Callable[..., Any]) -> Callable[..., Any]:
+def confined(pieces_of_step: Callable[..., Any]) -> Callable[..., Any]:
     """The maker of kernels, which fails the test that asks for another one than those above."""
 
     def make(variant: KernelVariant, *given: Any) -> Any:
         if variant not in QUICK:
             pytest.fail(refusal(variant), pytrace=False)
-        return pieces_of(variant, *given)
+        return pieces_of_step(variant, *given)
 
     return make
 

@@ -145,6 +145,11 @@ class Pieces(CPUDispatcher):  # type: ignore[misc]
         super().__init__(function.py_func, targetoptions=options)
         self.function, self._cache = function, _Kept(function, "piece")
 
+    @property
+    def kept(self) -> "_Kept":
+        """What stands between this and the stores."""
+        return self._cache
+
     def compile(self, sig: Any) -> Any:
         """Load or compile the code for these types."""
         with global_compiler_lock, compiling(), waiting.asked(self.function, "piece"):
@@ -153,7 +158,8 @@ class Pieces(CPUDispatcher):  # type: ignore[misc]
     def piece(self, *given: Any) -> Piece:
         """The piece for arguments of these types."""
         self.compile(given)
-        return Piece(self.overloads[given])
+        made = self.overloads[given]
+        return Piece(made.signature, lambda: made)
 
 
 class Entry(CPUDispatcher):  # type: ignore[misc]

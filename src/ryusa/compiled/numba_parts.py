@@ -18,6 +18,7 @@ from numba.core.targetconfig import TargetConfig
 from ryusa.compiled import processor
 from ryusa.compiled.content import UnknownContentError, content_of, digest_of
 
+_REFERENCES: Any = _parse_refprune_flags()  # Numba's own pass, which leaves out counts of references
 _RARELY = 50_000, 20, 100  # thresholds of the garbage collector: a compiler makes many objects that all stay
 
 
@@ -33,7 +34,7 @@ class InlinedLibrary(JITCodeLibrary):
         ll_module.data_layout = self._codegen._data_layout
         builder = self._codegen._pass_builder(opt=1)
         passes = builder.getFunctionPassManager()
-        passes.add_refprune_pass(_parse_refprune_flags())
+        passes.add_refprune_pass(_REFERENCES)
         for function in ll_module.functions:
             passes.run(function, builder)
 
@@ -41,7 +42,7 @@ class InlinedLibrary(JITCodeLibrary):
         """Build in what the functions call."""
         builder = self._codegen._pass_builder(opt=0, loop_vectorize=False, slp_vectorize=False)
         passes = builder.getModulePassManager()
-        passes.add_refprune_pass(_parse_refprune_flags())
+        passes.add_refprune_pass(_REFERENCES)
         passes.run(self._final_module, builder)
 
     def _finalize_final_module(self) -> None:

@@ -5,6 +5,8 @@ are lent: their owner keeps a tuple of them, and the piece reads it at its addre
 words that each call would copy.
 """
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 from llvmlite import ir
@@ -42,24 +44,35 @@ register_model(LentType)(models.OpaqueModel)
 class Piece:
     """A piece for calls from kernels.
 
-    Attributes
+    Parameters
     ----------
-    address : of its machine code.
+    signature : what it takes and returns.
+    find : returns the compiled piece; called when a kernel is called with it.
     """
 
-    def __init__(self, made: Any) -> None:
-        self._made = made  # whoever has the address keeps the code
-        self._numba_type_ = PieceType(made.signature)
-        self.address = made.library.get_pointer_to_function(made.fndesc.mangled_name)
-        assert self.address, made.fndesc.mangled_name
+    def __init__(self, signature: Signature, find: Callable[[], Any]) -> None:
+        self._numba_type_, self._find = PieceType(signature), find
+
+    @cached_property
+    def address(self) -> int:
+        """Of its machine code."""
+        self._made = made = self._find()  # whoever has the address keeps the code
+        if PieceType(made.signature) is not self._numba_type_:
+            raise TypeError(f"a piece for {self._numba_type_} was compiled as {made.signature}")
+        address = int(made.library.get_pointer_to_function(made.fndesc.mangled_name))
+        assert address, made.fndesc.mangled_name
+        return address
 
 
 @unbox(PieceType)
 def _unboxed(kind: Any, given: Any, c: Any) -> NativeValue:
     number = c.pyapi.object_getattr_string(given, "address")
-    address = c.pyapi.long_as_voidptr(number)
-    c.pyapi.decref(number)
-    return NativeValue(address)
+    place = cgutils.alloca_once_value(c.builder, ir.Constant(cgutils.voidptr_t, None))
+    failed = cgutils.is_null(c.builder, number)
+    with c.builder.if_then(c.builder.not_(failed)):
+        c.builder.store(c.pyapi.long_as_voidptr(number), place)
+        c.pyapi.decref(number)
+    return NativeValue(c.builder.load(place), is_error=failed)
 
 
 def _lend(typingctx: Any, value: Any) -> Any:

@@ -71,6 +71,13 @@ class Store:
     trouble: str = ""
     _tidied: bool = field(default=False, repr=False)
 
+    def can_keep(self) -> bool:
+        """Whether something can be written here."""
+        place = self.folder
+        while not place.exists() and place != place.parent:
+            place = place.parent
+        return self.writable and os.access(place, os.W_OK) and place.is_dir()
+
     def load(self, key: str) -> bytes | None:
         """Code of a key; None where there is none, or none that is whole."""
         file = self._file(key)

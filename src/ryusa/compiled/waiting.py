@@ -41,6 +41,7 @@ class _Open:
     inside: float = 0.0  # wall time of functions within it
     inside_own: float = 0.0
     compiles: bool = False  # no store has it
+    elsewhere: bool = False  # another process compiles it, and remembers its seconds
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,27 @@ class _Process:
         self.own: dict[str, float] = {}  # by kind and name, since the record was last written
         self.contents: list[str] = []
         self.listeners: list[tuple[Listener, Mapping[str, float]]] = []
+        self.beside: dict[_Key, float] = {}  # compiled by another process: when it will be there [s]
 
 
 _now = _Process()
+
+
+def compiled_beside(pieces: list["Compiled"]) -> None:
+    """Another process has begun to compile pieces, one after the other."""
+    end = time.perf_counter()
+    for function in pieces:
+        name = f"piece {function.name}"
+        expected = next((known[name] for _, known in _now.listeners if name in known), 0.0)
+        end += _record().by_name.get(f"whole {name}", expected)
+        _now.beside["piece", function] = end
+
+
+def done_by_another_process() -> None:
+    """The function asked for last is waited for."""
+    own = _now.open[-1]
+    own.compiles = own.elsewhere = True
+    _tell(own.key[1].name)
 
 
 def done() -> Done:
@@ -97,7 +116,7 @@ def left() -> float:
     for one, inner in zip_longest(stack, stack[1:]):
         end = time.perf_counter() if inner is None else inner.began
         total += max(0.0, scale * plan.get(one.key, 0.0) - (end - one.began - one.inside))
-    return total
+    return max(total, *(end - time.perf_counter() for end in _now.beside.values()), 0.0)
 
 
 @contextmanager
@@ -155,6 +174,11 @@ def _close(own: _Open, *, whole: bool) -> None:
         _now.open[-1].inside_own += seconds
     kind, function = own.key
     _now.met.add(own.key)
+    _now.beside.pop(own.key, None)
+    if own.elsewhere:
+        _now.done = Done(_now.done.functions + 1, _now.done.wall + wall)
+        _tell(None)
+        return
     expected = 0.0
     if _now.left:  # what it calls and has not asked for is not needed
         over = {own.key, *(("inner", one) for one in _reach(function))}
@@ -193,7 +217,7 @@ def _plan(key: _Key) -> None:
                 if named in _packaged():
                     continue
                 _now.left[named] = _record().by_name.get(f"whole {named}", seconds)
-            elif (other := (kind, made)) not in _now.met and not _remembered(other):
+            elif (other := (kind, made)) not in {*_now.met, *_now.beside} and not _remembered(other):
                 _expect(other)
 
 

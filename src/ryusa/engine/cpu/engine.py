@@ -21,7 +21,7 @@ from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.rigid_bodies import body_arrays, body_shares, body_state, place_members, wrap_bodies
-from ryusa.engine.cpu.time_loop import StepPieces, pieces_of, run
+from ryusa.engine.cpu.time_loop import PiecesOfStep, run
 from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
@@ -107,7 +107,6 @@ class CpuEngine:
         self._n, self._step, self._t = n, state.step, state.t
         self._variant = variant_of(scene)
         self._choice = choice_of(scene)
-        self._compiled: StepPieces | None = None
         blocks = blocks_of(n, scene.plane_case)
         self._layout = BlockLayout(scene, blocks, self._variant)
         self._parameters = common_parameters(scene)
@@ -124,6 +123,10 @@ class CpuEngine:
         )  # fmt: skip
         self._n_list = 0
         own = self._read_block(state)
+        self._grains, self._pairs = self._layout.grains_by_id(state), self._layout.empty_pairs()
+        self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
+        # from here on another process may compile what a step needs
+        self._pieces = PiecesOfStep(self._variant, self._choice, self._held(0), self._work[0])
 
         contacts, dropped = remaining_contacts(scene, state.contacts)
         self._records_drained = self._records_drained if changed else []
@@ -148,7 +151,6 @@ class CpuEngine:
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._parameters[P.SKIN] = self._skin
-        self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
         self._prune(memory, place_of)
         if state.step == 0:
             begin_account(scene, state, self._accounts.stats, self._accounts.terms)
@@ -269,7 +271,7 @@ class CpuEngine:
     def _advance(self, n_steps: int) -> Flags:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
-            pieces, held = self._pieces(), [self._held(k) for k in range(threads)]
+            pieces, held = self._pieces.of_step, [self._held(k) for k in range(threads)]
             reach, count, faces = film_reach(layout.scene), np.zeros(1, np.int64), layout.walls.faces
             shared = (threads, n_steps, self._step, self._travel, reach, count, pieces)
             own = [(one, faces, self._bodies, self._work[k]) for k, one in enumerate(held)]
@@ -310,12 +312,6 @@ class CpuEngine:
             layout.block_start, self._choice, self._grains, layout.walls, self._pairs, self._candidates.pairs,
             self._candidates.spares[thread], self._accounts, self._bodies,
         )  # fmt: skip
-
-    def _pieces(self) -> StepPieces:
-        """The compiled pieces of a step, which the types of its arrays decide."""
-        if self._compiled is None:
-            self._compiled = pieces_of(self._variant, self._choice, self._held(0), self._work[0])
-        return self._compiled
 
     def _rebuild_list(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
@@ -361,7 +357,7 @@ class CpuEngine:
     def _prune(self, memory: ContactMemory, place_of: np.ndarray) -> None:
         displacement = self._fastest_displacement()
         self._candidates.begin(
-            self._pieces().prune, self._held, self._skin, displacement, memory, place_of, self._share
+            self._pieces.prune, self._held, self._skin, displacement, memory, place_of, self._share
         )
 
     def _share(self, task: Callable[[int, int], Any]) -> list[Any]:

@@ -1,10 +1,12 @@
 """The loop over steps that threads run together, block by block."""
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 
+from ryusa.compiled.beside import Beside, Wanted
 from ryusa.compiled.borrow import borrow
 from ryusa.compiled.piece import LentType, Piece, call, lend
 from ryusa.engine.cpu import prune_schedule as K
@@ -40,25 +42,40 @@ class StepPieces(NamedTuple):
     move_bodies: Any  # None where there are none
 
 
-def pieces_of(variant: KernelVariant, choice: LawChoice, held: StepArrays, work: Workspace) -> StepPieces:
-    """The pieces for a scene, for arrays of these types."""
-    integer, number, flag = numba.types.int64, numba.types.float64, numba.types.boolean
-    lent_work, lent = LentType(numba.typeof(work)), LentType(numba.typeof(held))
-    moves = (integer, integer, flag, flag, integer, lent_work, lent)
+class PiecesOfStep:
+    """The pieces for a scene, for arrays of these types.
 
-    def piece(function: Any, *takes: Any) -> Piece:
-        return function.pieces.piece(*takes)
+    Forces and motion are half of all that is compiled; another process begins with them (compiled/beside.py),
+    while this one compiles what lists and prunes pairs.
+    """
 
-    # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
-    prune, forces = make_prune(bool(variant.walls)), make_block_forces(forces_kind(variant, choice))
-    moving = motion_kind(variant, choice)
-    move, move_bodies = make_integrate(moving), make_move_bodies(moving) if variant.bodies else None
-    return StepPieces(
-        prune=piece(prune, integer, number, number, integer, lent_work, lent),
-        forces=piece(forces, integer, integer, integer, number, number, flag, lent_work, lent),
-        move=piece(move, *moves),
-        move_bodies=None if move_bodies is None else piece(move_bodies, *moves),
-    )
+    def __init__(self, variant: KernelVariant, choice: LawChoice, held: StepArrays, work: Workspace) -> None:
+        integer, number, flag = numba.types.int64, numba.types.float64, numba.types.boolean
+        lent = LentType(numba.typeof(work)), LentType(numba.typeof(held))
+        self._moves, moving = (integer, integer, flag, flag, integer, *lent), motion_kind(variant, choice)
+        self._prunes = integer, number, number, integer, *lent
+        # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
+        self._prune = make_prune(bool(variant.walls))
+        self._move_bodies = make_move_bodies(moving) if variant.bodies else None
+        forces = integer, integer, integer, number, number, flag, *lent
+        self._beside = Beside(
+            [
+                Wanted(make_block_forces, (forces_kind(variant, choice),), forces),
+                Wanted(make_integrate, (moving,), self._moves),
+            ]
+        )
+
+    @cached_property
+    def prune(self) -> Piece:
+        """The piece that prunes the list of a block."""
+        return self._prune.pieces.piece(*self._prunes)
+
+    @cached_property
+    def of_step(self) -> StepPieces:
+        """All pieces of a step."""
+        forces, move = self._beside.pieces()
+        bodies = None if self._move_bodies is None else self._move_bodies.pieces.piece(*self._moves)
+        return StepPieces(self.prune, forces, move, bodies)
 
 
 @kernel(nogil=True, fastmath=FAST)
