@@ -224,6 +224,21 @@ def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
     assert estimate_cost(runs, tmp_path, jobs=1).there == (runs[1],)
 
 
+def test_one_run_of_each_case_comes_first_and_then_the_longest():
+    costs = {paper_run("saltation", {"stop.time": f"{k} s"}, 1): float(k) for k in (2, 4)}
+    costs |= {paper_run("drop", {"stop.time": f"{k} s"}, 1): float(k) for k in (1, 3, 5)}
+    order = runs_module._order(CostEstimate(costs, (), 0, 2))
+    assert [costs[one] for one in order] == [5.0, 4.0, 3.0, 2.0, 1.0]
+    dear = {one: 10.0 * cost if "drop" in one.folder else cost for one, cost in costs.items()}
+    assert [costs[one] for one in runs_module._order(CostEstimate(dear, (), 0, 2))] == [
+        5.0,
+        4.0,
+        3.0,
+        1.0,
+        2.0,
+    ]
+
+
 def test_the_estimate_lists_runs_of_other_states_of_the_code(tmp_path, monkeypatch):
     monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 7)]

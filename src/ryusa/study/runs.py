@@ -140,8 +140,14 @@ def _wanted(tasks: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
 
 
 def _order(ahead: CostEstimate) -> list[Task]:
-    """Finished tasks first, then the longest first, so that no core is idle at the end."""
-    return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
+    """Finished tasks first, then the longest of each case, then the longest first.
+
+    The first run of a case compiles its code: two that begin together would both compile it. The longest
+    come before the short ones, so that no core is idle at the end.
+    """
+    longest = sorted(ahead.costs, key=lambda one: -ahead.costs[one])
+    firsts = {one.folder.partition("/")[0]: one for one in reversed(longest)}.values()
+    return [*ahead.there, *sorted(longest, key=lambda one: one not in firsts)]
 
 
 def _count(results: TaskResults, done: TaskResult) -> None:
