@@ -28,9 +28,11 @@ def main() -> None:
     folder, wheels = (Path(one).resolve() for one in sys.argv[1:3])
     here, runs = folder / "environment", folder / "runs-from-wheels"
     os.environ.pop("PYTHONPATH", None)
+    files = [one for part in ("ryusa", "ryusa_kernels") for one in wheels.glob(f"{part}-*.whl")]
+    if len(files) != 2:
+        raise SystemExit(f"{wheels} does not hold one wheel of ryusa and one of its kernels: make kernels")
     subprocess.run([sys.executable, "-m", "venv", "--clear", here], check=True)
     pip = [here / "bin" / "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    files = [one for part in ("ryusa", "ryusa_kernels") for one in wheels.glob(f"{part}-*.whl")]
     subprocess.run([*pip, "--constraint", CONSTRAINTS, *files], check=True)
     shutil.rmtree(runs, ignore_errors=True)
     runs.mkdir()
