@@ -9,6 +9,8 @@ from typing import Any
 
 LONGEST = 64  # largest number of characters of a quantity
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
+_PLAIN_SIGNS = {0x3000: " ", 0x2212: "-"} | {0xFEE0 + code: chr(code) for code in range(0x21, 0x7F)}
+_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?![0-9,])")
 _FACTOR = re.compile(r"([A-Za-zμΩÅ°%]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
 _NAMES = {  # quantity that an SI unit measures, for messages
     "m": "a length",
@@ -98,8 +100,11 @@ def quantity(text: object, unit: str) -> float:
         raise UnitError(f"needs {_kind(unit)}, written as text with its unit, such as {example}")
     if len(text) > LONGEST:
         raise UnitError(f"longer than {LONGEST} characters; needs {_kind(unit)} such as {example}")
-    body = text.strip()
+    body = plain_signs(text).strip()
     found = _NUMBER.match(body)
+    if found is not None and (comma := _DECIMAL_COMMA.match(body)):
+        point = comma.group().replace(",", ".")
+        raise UnitError(f"decimals stand behind a point: write '{point}{body[comma.end() :]}'")
     if found is None:
         raise UnitError(f"needs {_kind(unit)}: a finite number and its unit, such as {example}")
     written = body[found.end() :].strip()
@@ -111,6 +116,15 @@ def quantity(text: object, unit: str) -> float:
     if value == 0.0 and Decimal(found.group()) != 0:
         raise UnitError(f"too small a number; needs {_kind(unit)}, such as {example}")
     return value + 0.0  # no -0.0
+
+
+def plain_signs(text: str) -> str:
+    r"""Text with plain signs in place of full-width ones, as Japanese input writes digits, and a plain minus.
+
+    >>> plain_signs("\uff12\uff0e\uff15 mm"), plain_signs("10²")
+    ('2.5 mm', '10²')
+    """
+    return text if text.isascii() else text.translate(_PLAIN_SIGNS)
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:

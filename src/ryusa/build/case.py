@@ -144,6 +144,9 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     of = materials_of(case, placement, n_first, traffic)
     if len(of):
         laws = replace(laws, density=densities(case, of[: len(placement.d)]))
+    elif (own := placement.density) is not None:
+        fed = np.full(len(placement.d) - len(own), case.grains.density)
+        laws = replace(laws, density=np.concatenate([own, fed]))
     open_below, open_above = case.domain.low is None, case.domain.high is None
     scene, state = before_feeding(*assemble(placement, laws), traffic, open_below, open_above)
     scene = with_room(with_walls(scene, walls), open_below, open_above)

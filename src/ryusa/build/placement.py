@@ -39,6 +39,7 @@ class Placement:
     endless: bool = False  # no boundary along x: a grain may roll far along a plane
     allow_overlap: bool = False
     names: tuple[str, ...] = ()  # names of free, then fixed grains in errors; () numbers them
+    density: Floats | None = None  # of free grains [kg/m3], (n,); None: that of the case
 
     @property
     def d_max(self) -> float:

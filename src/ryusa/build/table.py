@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.build.placement import Placement, Wall
 from ryusa.casefile.builders.schema import FromFile, RunSection
-from ryusa.casefile.builders.table import key_of, period_of, table_of
+from ryusa.casefile.builders.table import densities_of_file, key_of, period_of, table_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.errors import CaseError
@@ -50,7 +50,7 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
     free, fixed = order[~grid.fixed[order]], order[grid.fixed[order]]
     x, d = _columns(grid.column("x"), grid.column("y"), grid.column("z")), grid.column("d")
     labels = [grid.labels[row] for row in (*free, *fixed)]
-    own = {plane.name for plane in case.planes}
+    own, heavy = {plane.name for plane in case.planes}, densities_of_file(case)
     return Placement(
         d=d[free],
         x=x[free],
@@ -64,12 +64,23 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
         z_zero=grid.z_zero or 0.0,
         allow_overlap=allow_overlap,
         names=tuple(labels),
+        density=None if heavy is None else heavy[free],
         notes=_notes(case, run, grid),
     )
 
 
 def _notes(case: Case, run: str | None, grid: GrainTable) -> tuple[str, ...]:
-    notes: list[str] = []
+    notes = list(grid.notes)
+    heavy = densities_of_file(case)
+    if heavy is not None:
+        low, high = heavy[~grid.fixed].min(), heavy[~grid.fixed].max()
+        shown = f"{low:.4g}" if high - low < 1e-4 * high else f"{low:.4g} to {high:.4g}"
+        notes.append(
+            f"densities of {grid.name}, {shown} kg/m3, in place of grains.density = "
+            f"{case.grains.density:.4g} kg/m3"
+        )
+    elif case.materials and (np.any(grid.column("density")) or (run is None and np.any(grid.column("m")))):
+        notes.append(f"densities of the materials, not those of {grid.name}")
     if run is not None:
         notes.append(f"grains as in {run} at {grid.t:g} s; their contacts begin anew")
     if case.water is not None and case.water.zero is None and case.build.kind != "stream":

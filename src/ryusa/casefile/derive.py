@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from ryusa.casefile.builders.table import lightest_in_file
 from ryusa.casefile.builders.values import counts, room, sizes
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
@@ -75,7 +76,7 @@ def derive(case: Case) -> Derived:
         (lightest_of(case, a, b, both), smallest_of(case, a, b), both)
         for (a, b), both in meeting(case).items()
     ]
-    pairs = pairs if case.materials else [(case, d_min, meet)]
+    pairs = pairs if case.materials else [(lightest_in_file(case), d_min, meet)]
     lighter = least_mass(case)
     power = 0.4 if is_hertz(case) else 0.5  # of the mass in the duration of a contact
     shortest = lighter**power * min(shortest_contact(one, d, both) for one, d, both in pairs)

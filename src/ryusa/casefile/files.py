@@ -14,6 +14,17 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+def toml_text(path: Path) -> str:
+    """Text of a TOML file: in UTF-8, or as Windows writes it, with a mark in front or in UTF-16.
+
+    Raises
+    ------
+    OSError, UnicodeDecodeError : it cannot be read, or is neither.
+    """
+    raw = path.read_bytes()
+    return raw.decode("utf-16" if raw.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+
+
 def relative(path: str) -> str:
     """Check a path as written in a case file.
 

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from ryusa.casefile.case import Case
 from ryusa.casefile.checks import check
 from ryusa.casefile.faults import faults
+from ryusa.casefile.files import toml_text
 from ryusa.casefile.overrides import parsed, with_overrides
 from ryusa.cases import FOLDERS, case_files
 from ryusa.errors import CaseError
@@ -38,7 +39,7 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
             raise CaseError(
                 str(path), None, f"is larger than {LARGEST_FILE >> 20} MiB, the limit for a case file"
             )
-        text = path.read_bytes().decode("utf-8")
+        text = toml_text(path)
     except FileNotFoundError:
         raise CaseError(str(path), None, _not_found(path)) from None
     except UnicodeDecodeError as error:

@@ -1,8 +1,8 @@
 """The table of grains that ryusa writes and reads: units in the header, one row per grain and frame."""
 
-import csv
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
+from ryusa.formats.dialect import Dialect, dialect_of
 from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, UNITS, GrainTable, PlaneWall
 from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened
 from ryusa.model.arrays import Floats
@@ -76,15 +77,15 @@ def read_csv(path: Path, name: str, frame: int | None = None) -> GrainTable:
     Rows of one frame stand together and have the same `t`; a table without `t` is one frame.
     """
     with opened(path, name) as lines:
-        about, heads = _head(lines)
+        about, heads, dialect = _head(lines)
         names = [one for one, _ in heads]
         when = names.index("t") if "t" in names else None
         rows: list[tuple[int, str]] = []
         now, n_frame = "", 0
         while lines.advance():
-            if not lines.text.strip(" ,\t") or lines.text.lstrip().startswith("#"):
+            if dialect.blank(lines.text):
                 continue
-            cells = split_cells(lines.text)
+            cells = dialect.cells(lines.text, len(heads))
             if len(cells) != len(heads):
                 raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
             t = cells[when] if when is not None else ""
@@ -97,31 +98,13 @@ def read_csv(path: Path, name: str, frame: int | None = None) -> GrainTable:
             raise lines.error("expected at least one grain below the header")
         if frame is not None and frame >= n_frame:
             raise lines.error(f"build.frame = {frame}: the file has frames 0 to {n_frame - 1}")
-    return _table(Rows(name, rows, cell_column, split_cells), heads, about)
+        notes = lines.notes
+    made = Rows(name, rows, dialect.column, dialect.split, dialect.number)
+    return replace(_table(made, heads, about), notes=notes)
 
 
-def split_cells(text: str) -> list[str]:
-    """Cells of one line."""
-    return next(csv.reader([text])) if '"' in text else text.split(",")
-
-
-def cell_column(text: str, k: int) -> int:
-    """Column of the first character of cell k, from 1.
-
-    >>> cell_column("a,bc,d", 2)
-    6
-    """
-    at, quoted = 0, False
-    for place, sign in enumerate(text):
-        if at == k:
-            return place + 1 + len(text[place:]) - len(text[place:].lstrip(" "))
-        quoted = quoted != (sign == '"')
-        at += sign == "," and not quoted
-    return len(text) + 1
-
-
-def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]]]:
-    """What a comment states for all rows, and name and factor of each column."""
+def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]], Dialect]:
+    """What a comment states for all rows, name and factor of each column, and how cells are separated."""
     about: dict[str, Any] = {}
     while lines.advance():
         if lines.text.startswith(MARK):
@@ -130,9 +113,10 @@ def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]]]:
             break
     else:
         raise lines.error("expected a header and at least one grain")
-    header = Rows(lines.name, [(lines.number, lines.text)], cell_column, split_cells)
+    dialect = dialect_of(lines.text)
+    header = Rows(lines.name, [(lines.number, lines.text)], dialect.column)
     heads: list[tuple[str, float]] = []
-    for k, cell in enumerate(split_cells(lines.text)):
+    for k, cell in enumerate(dialect.heads(lines.text)):
         try:
             heads.append(_column(cell))
         except ValueError as error:
@@ -145,7 +129,7 @@ def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]]]:
         raise header.error(
             0, next(k for k, one in enumerate(names) if one in names[:k]), "a column appears twice"
         )
-    return about, heads
+    return about, heads, dialect
 
 
 def _about(lines: Lines) -> dict[str, Any]:
@@ -225,7 +209,7 @@ def _table(rows: Rows, heads: list[tuple[str, float]], about: dict[str, Any]) ->
     fixed: list[bool] = []
     group: list[str] = []
     for row, (_, text) in enumerate(rows.where):
-        cells = split_cells(text)
+        cells = rows.split(text)
         word = cells[words["fixed"]].strip().lower() if "fixed" in words else ""
         if word not in _YES | _NO:
             raise rows.error(row, words["fixed"], f"fixed must be 0 or 1, not {word[:40]!r}")

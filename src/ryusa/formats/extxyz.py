@@ -11,6 +11,7 @@ import numpy as np
 
 from ryusa.errors import ParseError
 from ryusa.formats.grains import GrainTable
+from ryusa.formats.names import meaning_of, not_used, open_in_z
 from ryusa.formats.text import Lines, ReadOptions, Rows, checked, frame_asked_for, opened, shown
 from ryusa.model.arrays import Floats
 
@@ -68,16 +69,16 @@ _READ = {  # property: columns of a table
     "pos": ("x", "y", "z"),
     **dict.fromkeys(("velo", "vel", "velocity", "velocities"), ("vx", "vy", "vz")),
     **dict.fromkeys(("omega", "angular_velocity"), ("wx", "wy", "wz")),
-    **dict.fromkeys(("radius", "radii", "diameter"), ("d",)),
 }
-_RADII = {"radius", "radii"}
+_WITHOUT_USE = {"species", "id", "fixed", "image"}  # of which nothing need be said
 _PERIODIC = {"t": True, "true": True, "1": True, "f": False, "false": False, "0": False}
 
 
 def read_xyz(path: Path, name: str, options: ReadOptions) -> GrainTable:
     """Read one frame."""
     with opened(path, name) as lines:
-        return _table(*frame_asked_for(lines, options, lambda: _head(lines)), options)
+        head, rows = frame_asked_for(lines, options, lambda: _head(lines))
+        return _table(head, rows, options, lines.notes)
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ def _head(lines: Lines) -> _Head | None:
     while lines.advance():
         if not lines.text.strip():
             continue
-        n = lines.integer(0, "the number of grains", 1)
+        n = lines.integer(0, "the number of grains")
         if len(lines.text.split()) > 1:
             raise lines.error("expected the number of grains alone on its line", 1)
         lines.need("the line that describes the columns")
@@ -102,7 +103,7 @@ def _head(lines: Lines) -> _Head | None:
     return None
 
 
-def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
+def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]) -> GrainTable:
     line, about = head.line, head.text
     keys = {found[1].lower(): found for found in _KEY.finditer(about)}
 
@@ -114,7 +115,8 @@ def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
         return ParseError(rows.name, line, keys[key].start() + 1, message)
 
     words: dict[str, int] = {}
-    radii = False
+    factors: dict[str, float] = {}
+    unused: list[str] = []
     width = 0
     text = value("properties") if "properties" in keys else _PLAIN
     parts = text.split(":")
@@ -122,12 +124,16 @@ def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
         known, kind, count = (*parts[k : k + 3], "", "")[:3]
         if kind not in {"S", "I", "R", "L"} or not count.isdecimal() or not 1 <= int(count[:4]) <= 100:
             raise wrong("properties", f"expected Properties as name:type:count:..., found {shown(text)}")
-        columns = _READ.get(known, ("id",) if known == "id" else ("fixed",) if known == "fixed" else ())
+        word, size = known.lower(), meaning_of(known)
+        columns = _READ.get(word, (word,) if word in {"id", "fixed"} else (size[0],) if size else ())
         if columns and len(columns) != int(count):
             raise wrong("properties", f"expected {len(columns)} columns of '{known}', found {int(count)}")
         for j, column in enumerate(columns):
             words.setdefault(column, width + j)
-        radii = radii or known in _RADII
+        if size is not None:
+            factors.setdefault(size[0], size[1])
+        if not columns and word not in _WITHOUT_USE:
+            unused.append(known)
         width += int(count)
     if "x" not in words:
         raise wrong("properties", "expected a property pos:R:3, the positions")
@@ -137,8 +143,8 @@ def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
     names = [one for one in words if one not in {"id", "fixed"}]
     values = rows.columns([words[one] for one in names], [f"'{one}'" for one in names])
     found: dict[str, Floats] = dict(zip(names, values, strict=True))
-    if radii:
-        found["d"] = 2.0 * found["d"]
+    found |= {name: factor * found[name] for name, factor in factors.items() if name in found}
+    period, shut_above = _period(keys, value, wrong, options.length)
     n, still, at = len(rows.where), words.get("fixed"), words.get("id")
     table = GrainTable(
         name=rows.name,
@@ -147,7 +153,16 @@ def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
         group=("",) * n,
         labels=tuple(f"of line {number} of {rows.name}" for number, _ in rows.where),
         ids=rows.integers(at, "an id") if at is not None else np.zeros(0, np.int64),
-        period=_period(keys, value, wrong, options.length),
+        period=period,
+        notes=(
+            *notes,
+            *not_used(rows.name, unused),
+            *open_in_z(rows.name, shut_above),
+            *(
+                (f"{rows.name} has a Lattice but no pbc: its sides are taken as open",)
+                * ("lattice" in keys and "pbc" not in keys)
+            ),
+        ),
     )
     return checked(table, rows, words)
 
@@ -157,17 +172,18 @@ def _period(
     value: Callable[[str], str],
     wrong: Callable[[str, str], ParseError],
     unit: float,
-) -> tuple[float, float] | None:
-    """Periods in x and y; None where the file does not state both its sides and which are periodic."""
+) -> tuple[tuple[float, float] | None, bool]:
+    """Periods in x and y, and whether there is one in z.
+
+    The periods are None where the file does not state both its sides and which of them are periodic.
+    """
     if "pbc" not in keys:
-        return None
+        return None, False
     flags = [_PERIODIC.get(one.lower()) for one in value("pbc").split()]
     if len(flags) != 3 or None in flags:
         raise wrong("pbc", "expected three of T and F")
-    if flags[2]:
-        raise wrong("pbc", "expected a box that is open in z; ryusa has periods in x and y only")
     if not any(flags):
-        return math.inf, math.inf
+        return (math.inf, math.inf), False
     if "lattice" not in keys:
         raise wrong("pbc", "expected Lattice beside pbc")
     try:
@@ -179,4 +195,4 @@ def _period(
     lengths = [float(sides[k, k]) if flags[k] else math.inf for k in (0, 1)]
     if not all(length > 0.0 for length in lengths):
         raise wrong("lattice", "expected sides above 0")
-    return lengths[0] * unit, lengths[1] * unit
+    return (lengths[0] * unit, lengths[1] * unit), bool(flags[2])

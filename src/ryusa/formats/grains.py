@@ -19,6 +19,7 @@ UNITS = {
     **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
     **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
     "m": "kg",
+    "density": "kg/m3",
 }
 
 
@@ -42,7 +43,8 @@ class GrainTable:
     Attributes
     ----------
     name : the file or folder, for messages.
-    columns : x, y, z, d [m], vx, vy, vz [m/s], wx, wy, wz [rad/s], m [kg], each of shape (n,).
+    columns : x, y, z, d [m], vx, vy, vz [m/s], wx, wy, wz [rad/s], m [kg], density [kg/m3], each of shape
+        (n,).
     fixed : whether a grain never moves, (n,).
     group : name of the group of each row, "" where none.
     labels : what messages call each row, such as "of line 7 of grains.csv".
@@ -56,6 +58,7 @@ class GrainTable:
     clump : number of the clump of each row, `NO_CLUMP` for a grain of its own, (n,); None without clumps.
     orientation : unit quaternions (w, x, y, z) from the principal axes of the clump of each row to space,
         (1, 0, 0, 0) for a grain of its own, (n, 4); None without clumps.
+    notes : what is in the file and is not used, and how it was read.
     """
 
     name: str
@@ -73,6 +76,7 @@ class GrainTable:
     bed_area: float | None = None
     clump: NDArray[np.int64] | None = None
     orientation: Floats | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:

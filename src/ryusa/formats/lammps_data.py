@@ -1,7 +1,8 @@
-"""Data files of LAMMPS with `atom_style sphere`, as `write_data` makes them."""
+"""Data files of LAMMPS and LIGGGHTS of grains with a diameter, as `write_data` makes them."""
 
-import re
+from itertools import takewhile
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +11,34 @@ from ryusa.formats.grains import GrainTable
 from ryusa.formats.text import Lines, ReadOptions, Rows, checked, opened, shown
 
 _SKIPPED = {"Masses", "Pair Coeffs", "PairIJ Coeffs", "Atom Type Labels"}
-_ATOMS = {"id": 0, "type": 1, "d": 2, "x": 4, "y": 5, "z": 6}  # words of a row; word 3 is the density
 _VELOCITIES = {"vx": 1, "vy": 2, "vz": 3, "wx": 4, "wy": 5, "wz": 6}
-_HEAD = re.compile(r"[^A-Za-z]*([a-z][a-zA-Z ]*)")
+_IMAGES = 3  # words that may follow those of a row
+
+
+class _Style(NamedTuple):
+    """How the rows of a style of atoms read: what words 0, 1, ... are; what is not used has no name."""
+
+    name: str
+    words: tuple[str, ...]
+
+    def place(self, one: str) -> int:
+        return self.words.index(one)
+
+
+_OF_SPHERES = ("d", "density")
+_STYLES = {
+    "sphere": _Style("sphere", ("id", "type", *_OF_SPHERES, "x", "y", "z")),
+    "bpm/sphere": _Style("bpm/sphere", ("id", "molecule", "type", *_OF_SPHERES, "x", "y", "z")),
+}
+_STYLES["granular"] = _STYLES["sphere"]  # its name in LIGGGHTS
+_HYBRID = {  # words that a style adds to a row of atom_style hybrid, in the order in which it names them
+    "sphere": _OF_SPHERES,
+    **dict.fromkeys(("angle", "bond", "molecular"), ("molecule",)),
+    "charge": ("charge",),
+    "full": ("molecule", "charge"),
+    "dipole": ("charge", "dipole_x", "dipole_y", "dipole_z"),
+    "atomic": (),
+}
 
 
 def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
@@ -22,9 +48,12 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
     with opened(path, name) as lines:
         lines.need("the title of a data file of LAMMPS")
         n, section = _head(lines)
+        style = _STYLES["sphere"]
         while section:
             if section == "Atoms":
+                style = _style(lines)
                 atoms = _block(lines, n)
+                _check_words(atoms, style)
             elif section == "Velocities":
                 speeds = _block(lines, n)
             elif section in _SKIPPED:
@@ -34,21 +63,23 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
             section = _next_section(lines)
         if atoms is None:
             raise lines.error("the file ends; expected the section Atoms")
-    ids = atoms.integers(_ATOMS["id"], "an id")
-    places = {one: word for one, word in _ATOMS.items() if one not in {"id", "type"}}
-    values = atoms.columns(list(places.values()), [f"'{one}' of atom_style sphere" for one in places])
+        notes = lines.notes
+    ids = atoms.integers(style.place("id"), "an id")
+    places = {one: style.place(one) for one in ("d", "density", "x", "y", "z")}
+    values = atoms.columns(list(places.values()), [f"'{one}' of atom_style {style.name}" for one in places])
     columns = dict(zip(places, values, strict=True))
     if speeds is not None:
         columns |= _in_order(atoms, ids, speeds)
     table = GrainTable(
         name=name,
         columns=options.in_si(columns),
-        fixed=options.fixed(atoms, _ATOMS["type"]),
+        fixed=options.fixed(atoms, style.place("type")),
         group=("",) * n,
         labels=tuple(f"of line {line} of {name}" for line, _ in atoms.where),
         ids=ids,
+        notes=notes,
     )
-    return checked(table, atoms, _ATOMS)
+    return checked(table, atoms, {**places, "id": style.place("id")})
 
 
 def _head(lines: Lines) -> tuple[int, str]:
@@ -61,30 +92,68 @@ def _head(lines: Lines) -> tuple[int, str]:
         if text[0].isalpha():
             if n < 1:
                 raise lines.error("expected the number of atoms before the first section")
-            return n, _style(lines)
-        kind = _HEAD.fullmatch(text)
-        words = kind.group(1) if kind else ""
-        if words == "atoms":
+            return n, _section(lines)
+        words = text.split()
+        numbers = list(takewhile(_is_number, words))
+        about = " ".join(words[len(numbers) :])
+        if about == "atoms":
             n = lines.integer(0, "the number of atoms", 1)
-        elif words == "xy xz yz":
+        elif about == "xy xz yz" and any(float(one) for one in numbers):
             raise lines.error("expected a box that is not skewed")
-        elif not words:
+        elif about in {"avec", "bvec", "cvec"}:
+            raise lines.error("expected a box along x, y and z, with xlo xhi, ylo yhi and zlo zhi")
+        elif not numbers or not about:
             raise lines.error(f"expected a line such as '100 atoms', found {shown(text)}")
     raise lines.error("the file ends; expected the section Atoms")
 
 
-def _style(lines: Lines) -> str:
-    """Name of the section that this line begins; Atoms must be of style sphere where it says."""
-    section, _, style = (part.strip() for part in lines.text.partition("#"))
-    if section == "Atoms" and style and style != "sphere":
-        raise lines.error(f"expected atom_style sphere, found {shown(style)}", 2)
-    return section
+def _is_number(word: str) -> bool:
+    try:
+        return bool(float(word) or True)
+    except ValueError:
+        return False
+
+
+def _section(lines: Lines) -> str:
+    """Name of the section that this line begins."""
+    return lines.text.partition("#")[0].strip()
+
+
+def _style(lines: Lines) -> _Style:
+    """Style of the section Atoms that this line begins; sphere where it does not say."""
+    words = lines.text.partition("#")[2].split()
+    if not words:
+        return _STYLES["sphere"]
+    if words[0] == "hybrid" and "sphere" in words and set(words[1:]) <= set(_HYBRID):
+        more = [one for style in words[1:] for one in _HYBRID[style]]
+        return _Style(" ".join(words), ("id", "type", "x", "y", "z", *more))
+    if words[0] not in _STYLES or len(words) > 1:
+        raise lines.error(
+            f"expected grains with a diameter, atom_style {', '.join(_STYLES)} or hybrid with sphere; found "
+            f"{shown(' '.join(words))}",
+            2,
+        )
+    return _STYLES[words[0]]
+
+
+def _check_words(atoms: Rows, style: _Style) -> None:
+    """Refuse rows that are not of the style: their words would be taken for other numbers."""
+    n = len(style.words)
+    for row, (_, text) in enumerate(atoms.where):
+        found = len(text.partition("#")[0].split())
+        if found not in {n, n + _IMAGES}:
+            raise atoms.error(
+                row, min(found, n) - 1,
+                f"expected {n} words as of atom_style {style.name} ({' '.join(style.words)}), or "
+                f"{n + _IMAGES} with image flags, found {found}: write the file with atom_style sphere, or "
+                "name its style behind 'Atoms #'",
+            )  # fmt: skip
 
 
 def _next_section(lines: Lines) -> str:
     while lines.advance():
         if lines.text.strip():
-            return _style(lines)
+            return _section(lines)
     return ""
 
 

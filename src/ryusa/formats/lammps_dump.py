@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.formats.grains import GrainTable
+from ryusa.formats.names import meaning_of, not_used, open_in_z
 from ryusa.formats.text import Lines, ReadOptions, Rows, checked, frame_asked_for, opened, shown
 from ryusa.model.arrays import Floats
 
@@ -62,12 +63,10 @@ def dump_frame(table: GrainTable) -> bytes:
 
 
 _READ = {
-    **{name: name for name in ("vx", "vy", "vz")},
-    **{f"omega{axis}": f"w{axis}" for axis in "xyz"},
-    "diameter": "d",
-    "radius": "d",
+    **{name: (name, 1.0) for name in ("vx", "vy", "vz")},
+    **{f"omega{axis}": (f"w{axis}", 1.0) for axis in "xyz"},
 }
-_FACTOR = {"radius": 2.0}
+_WITHOUT_USE = {"id", "type", "element", "proc", "ix", "iy", "iz"}  # of which nothing need be said
 _PLACES = (("", "u"), ("s", "su"))  # endings of x, y, z: lengths; shares of the box
 
 
@@ -87,7 +86,8 @@ class _Head:
 def read_dump(path: Path, name: str, options: ReadOptions) -> GrainTable:
     """Read one frame of a dump."""
     with opened(path, name) as lines:
-        return _table(*frame_asked_for(lines, options, lambda: _head(lines, options)), options)
+        head, rows = frame_asked_for(lines, options, lambda: _head(lines, options))
+        return _table(head, rows, options, lines.notes)
 
 
 def _head(lines: Lines, options: ReadOptions) -> _Head | None:
@@ -116,19 +116,15 @@ def _head(lines: Lines, options: ReadOptions) -> _Head | None:
                     )
             case ["ITEM:", "NUMBER", "OF", "ATOMS"]:
                 lines.need("the number of grains")
-                n = lines.integer(0, "the number of grains", 1)
+                n = lines.integer(0, "the number of grains")
             case ["ITEM:", "BOX", "BOUNDS", *sides]:
                 if len(sides) not in {0, 3} or not all(len(one) == 2 for one in sides):
                     raise lines.error("expected sides such as 'pp ff ff': a box that is not skewed", 3)
-                if sides and "p" in sides[2]:
-                    raise lines.error(
-                        "expected a box that is open in z; ryusa has periods in x and y only", 5
-                    )
                 low, size = [], []
                 for axis in "xyz":
                     lines.need(f"the bounds of the box in {axis}")
                     begin, end = lines.floats(0, 2, f"a bound of the box in {axis}")
-                    if not begin < end:
+                    if not begin < end and n != 0:
                         raise lines.error("expected a lower bound below the upper one")
                     low.append(begin)
                     size.append(end - begin)
@@ -143,30 +139,32 @@ def _head(lines: Lines, options: ReadOptions) -> _Head | None:
     return None
 
 
-def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
+def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]) -> GrainTable:
     columns: dict[str, Floats] = {}
     words: dict[str, int] = {}
+    factors: dict[str, float] = {}
     scaled: set[str] = set()
     for word, one in enumerate(head.columns):
         place, share = one[:1], one[1:]
-        known = _READ.get(one)
+        known, factor = _READ.get(one) or meaning_of(one) or (None, 1.0)
         if place in {"x", "y", "z"} and share in (*_PLACES[0], *_PLACES[1]):
             known = place
             if share in _PLACES[1]:
                 scaled.add(place)
         if known is not None and known not in words:
-            words[known] = word
+            words[known], factors[known] = word, factor
     header = Rows(rows.name, [(head.line, head.text)])
     for axis in "xyz":
         if axis not in words:
             raise header.error(0, 2, f"expected a column '{axis}' (or {axis}u, {axis}s) in ITEM: ATOMS")
     values = rows.columns(list(words.values()), [f"column '{head.columns[k]}'" for k in words.values()])
-    for (known, word), one in zip(words.items(), values, strict=True):
-        columns[known] = one * _FACTOR.get(head.columns[word], 1.0)
+    for known, one in zip(words, values, strict=True):
+        columns[known] = one * factors[known]
     for axis in scaled:
         k = "xyz".index(axis)
         columns[axis] = head.low[k] + columns[axis] * head.size[k]
     at = {one: k for k, one in enumerate(head.columns)}
+    unused = [one for one, k in at.items() if k not in words.values() and one not in _WITHOUT_USE]
     ids = rows.integers(at["id"], "an id") if "id" in at else np.zeros(0, np.int64)
     inf = math.inf
     table = GrainTable(
@@ -182,5 +180,10 @@ def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
         )
         if head.sides
         else None,
+        notes=(
+            *notes,
+            *not_used(rows.name, unused),
+            *open_in_z(rows.name, bool(head.sides) and "p" in head.sides[2]),
+        ),
     )
     return checked(table, rows, {**words, "id": at.get("id", 0)})

@@ -1,5 +1,6 @@
 """Triangle meshes of STL and OBJ files."""
 
+import io
 import re
 from pathlib import Path
 
@@ -51,16 +52,20 @@ def read_mesh(path: Path, name: str) -> Floats:
 
 
 def _read_stl(path: Path, name: str) -> Floats:
-    """Corners of an STL file; text and binary are told apart by the length, as many binary ones say solid."""
-    whole = path.read_bytes()
+    """Corners of an STL file; text and binary are told apart by the length, as many binary ones say solid.
+
+    Some programs write more behind the triangles of a binary file; that is no triangle and is not read.
+    """
+    whole = path.read_bytes().removeprefix(b"\xef\xbb\xbf")
     stated = int.from_bytes(whole[80:_HEAD], "little") if len(whole) >= _HEAD else -1
-    if len(whole) != _HEAD + _ROW * stated:
+    end = _HEAD + _ROW * stated
+    if not stated >= 0 or len(whole) < end or (len(whole) > end and (not stated or _is_text(whole))):
         return _read_text(whole, stated, name)
     if stated == 0:
         return np.zeros((0, 3, 3))
     import trimesh
 
-    with path.open("rb") as file:
+    with io.BytesIO(whole[:end]) as file:
         try:
             loaded = trimesh.load_mesh(file, file_type="stl", process=False, maintain_order=True)
             corners = np.asarray(loaded.vertices, dtype=np.float64)[np.asarray(loaded.faces, dtype=np.int64)]
@@ -69,6 +74,10 @@ def _read_stl(path: Path, name: str) -> Floats:
             about = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
             raise ParseError(name, 1, 1, f"cannot be read as STL ({about})") from error
     return corners
+
+
+def _is_text(whole: bytes) -> bool:
+    return re.match(rb"\s*solid\b", whole, re.IGNORECASE) is not None and b"\0" not in whole
 
 
 def _read_text(whole: bytes, stated: int, name: str) -> Floats:
@@ -80,7 +89,7 @@ def _read_text(whole: bytes, stated: int, name: str) -> Floats:
     """
     if not whole.strip():
         raise ParseError(name, 1, 1, "is empty")
-    if re.match(rb"\s*solid\b", whole, re.IGNORECASE) is None or b"\0" in whole:
+    if not _is_text(whole):
         if stated < 0:
             raise ParseError(name, 1, 1, "is neither text nor binary STL; is it another format?")
         raise ParseError(

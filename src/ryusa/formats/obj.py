@@ -56,7 +56,7 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """Words of each line that has some, with its number; a line that ends in a backslash goes on."""
     found: list[tuple[int, list[str]]] = []
     before: list[str] = []
-    for number, line in enumerate(path.read_bytes().decode("utf-8", "replace").splitlines(), 1):
+    for number, line in enumerate(path.read_bytes().decode("utf-8-sig", "replace").splitlines(), 1):
         words = before + line.partition("#")[0].split()
         before = []
         if words and words[-1].endswith("\\"):

@@ -1,5 +1,6 @@
 """A sieve curve as CSV: diameter with its unit and percent finer by mass, one row per sieve."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from ryusa.formats.table import metres, name_and_unit, read_table
@@ -28,7 +29,9 @@ def read_sieve_curve(path: Path, name: str) -> tuple[tuple[float, float], ...]:
     )
     names = [one for one, _ in heads]
     k_d, k_finer = names.index("diameter"), names.index("finer")
-    d, finer = rows.columns([k_d, k_finer], ["a diameter", "percent finer"])
+    (d,) = rows.columns([k_d], ["a diameter"])
+    signed = replace(rows, number=lambda cell: rows.number(cell.strip().removesuffix("%")))
+    (finer,) = signed.columns([k_finer], ["percent finer"])
     d = d * heads[k_d][1]
     for row, one in enumerate(d.tolist()):
         if not D_LOW <= one <= D_HIGH:

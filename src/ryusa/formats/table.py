@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from ryusa.errors import ParseError
-from ryusa.formats.csv import cell_column, split_cells
+from ryusa.formats.dialect import Dialect, dialect_of
 from ryusa.formats.text import Lines, Rows, opened, shown
 from ryusa.units import UnitError, quantity
 
@@ -40,18 +40,18 @@ def read_table(
     if path.stat().st_size > LARGEST_FILE:
         raise ParseError(name, 1, 1, f"is larger than 1 MiB, the limit for a table of a row per {row}")
     with opened(path, name) as lines:
-        heads = _head(lines, row, example, column, needed)
+        heads, dialect = _head(lines, row, example, column, needed)
         where: list[tuple[int, str]] = []
         while lines.advance():
-            if not lines.text.strip(" ,\t") or lines.text.lstrip().startswith("#"):
+            if dialect.blank(lines.text):
                 continue
-            cells = split_cells(lines.text)
+            cells = dialect.cells(lines.text, len(heads))
             if len(cells) != len(heads):
                 raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
             where.append((lines.number, lines.text))
         if not where:
             raise lines.error(f"expected {least} below the header")
-    return Rows(name, where, cell_column, split_cells), heads
+    return Rows(name, where, dialect.column, dialect.split, dialect.number), heads
 
 
 def name_and_unit(cell: str, known: Collection[str], example: str) -> tuple[str, str]:
@@ -61,8 +61,6 @@ def name_and_unit(cell: str, known: Collection[str], example: str) -> tuple[str,
     ------
     ValueError : an unknown column, or one without a unit.
     """
-    if ";" in cell or "\t" in cell:
-        raise ValueError(f"columns are separated by commas, as in {example}")
     column, _, rest = cell.partition("[")
     column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
     if column not in known:
@@ -91,16 +89,17 @@ def _head(
     example: str,
     column: Callable[[str], tuple[str, float]],
     needed: Sequence[str],
-) -> list[tuple[str, float]]:
-    """Name of each column and its factor."""
+) -> tuple[list[tuple[str, float]], Dialect]:
+    """Name of each column and its factor, and how cells are separated."""
     while lines.advance():
         if lines.text.strip() and not lines.text.lstrip().startswith("#"):
             break
     else:
         raise lines.error(f"expected a header such as {example}, and below it a row per {row}")
-    header = Rows(lines.name, [(lines.number, lines.text)], cell_column, split_cells)
+    dialect = dialect_of(lines.text)
+    header = Rows(lines.name, [(lines.number, lines.text)], dialect.column)
     heads: list[tuple[str, float]] = []
-    for k, cell in enumerate(split_cells(lines.text)):
+    for k, cell in enumerate(dialect.heads(lines.text)):
         try:
             heads.append(column(cell))
         except ValueError as error:
@@ -113,4 +112,4 @@ def _head(
             )
         if names.count(one) > 1:
             raise header.error(0, len(names) - 1 - names[::-1].index(one), "a column appears twice")
-    return heads
+    return heads, dialect

@@ -1,7 +1,10 @@
 """Text files from strangers, line by line: sizes are bounded, and every error names line and column."""
 
+import gzip
+import io
 import math
 import re
+import zlib
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -14,12 +17,15 @@ from numpy.typing import NDArray
 from ryusa.errors import ParseError
 from ryusa.formats.grains import UNITS, GrainTable
 from ryusa.model.arrays import Bools, Floats
+from ryusa.units import plain_signs
 
 LONGEST = 1 << 16  # characters of a line
 LARGEST = 1.0e12  # of any number in SI
 D_LOW, D_HIGH = 1.0e-7, 1.0e3  # diameters [m], as for `grains.diameter`
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 _SHOWN = 40  # characters of a word in a message
+_NO_TEXT = "expected text in UTF-8, in UTF-16 with its mark, or as Windows writes it in Japan or in the West"
+_SAMPLE = 1 << 20  # bytes from which an encoding is found
 Head = TypeVar("Head", bound="FrameHead")
 
 
@@ -37,7 +43,7 @@ def word_column(text: str, k: int) -> int:
 
 def shown(text: str) -> str:
     """Text from a file for a message, shortened and printable."""
-    return ascii(text if len(text) <= _SHOWN else text[:_SHOWN] + "...")
+    return repr(text if len(text) <= _SHOWN else text[:_SHOWN] + "...")
 
 
 @dataclass
@@ -48,18 +54,19 @@ class Lines:
     file: TextIO
     number: int = 0
     text: str = ""
+    notes: tuple[str, ...] = ()  # what a reader of the case should know about the file
 
     def advance(self) -> bool:
-        """Read the next line; False at the end of the file."""
+        """Read the next line; False at the end of the file. Full-width signs become plain ones."""
         self.number += 1
         self.text = ""
         try:
             text = self.file.readline(LONGEST + 1)
         except UnicodeDecodeError:
-            raise ParseError(self.name, self.number, 1, "expected UTF-8 text") from None
+            raise ParseError(self.name, self.number, 1, _NO_TEXT) from None
         if len(text) > LONGEST:
             raise ParseError(self.name, self.number, LONGEST, f"a line is longer than {LONGEST} characters")
-        self.text = text.rstrip("\n")
+        self.text = plain_signs(text.rstrip("\n"))
         return bool(text)
 
     def need(self, what: str) -> str:
@@ -110,17 +117,61 @@ class Lines:
 
 @contextmanager
 def opened(path: Path, name: str) -> Generator[Lines]:
-    """Open a text file.
+    """Open a text file, compressed by gzip or not.
 
     Raises
     ------
     ParseError : it cannot be opened or read.
     """
     try:
-        with path.open(encoding="utf-8-sig") as file:
-            yield Lines(name, file)
-    except OSError as error:
-        raise ParseError(name, 1, 1, f"cannot be read ({error.strerror or error})") from None
+        with path.open("rb") as file:
+            packed = file.read(2) == b"\x1f\x8b"
+            file.seek(0)
+            with gzip.open(file) if packed else file as raw:
+                encoding, words = _encoding_of(raw.read(_SAMPLE), name)
+                raw.seek(0)
+                lines = Lines(name, io.TextIOWrapper(raw, encoding=encoding))
+                if words:
+                    lines.notes = (f"{name} is read as {words}",)
+                yield lines
+    except (OSError, EOFError, zlib.error) as error:
+        why = getattr(error, "strerror", None) or error
+        raise ParseError(name, 1, 1, f"cannot be read ({why})") from None
+
+
+def _encoding_of(sample: bytes, name: str) -> tuple[str, str]:
+    """Encoding of a text, and words for it where that is not UTF-8.
+
+    Raises
+    ------
+    ParseError : it is no text.
+    """
+    if sample.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16", ""
+    try:
+        # the last sign may be cut off
+        sample[: sample.rfind(b"\n") + 1 or None].decode("utf-8")
+        return "utf-8-sig", ""
+    except UnicodeDecodeError:
+        pass
+    for encoding, words, fits in (
+        ("cp932", "Shift-JIS", _is_japanese),
+        ("cp1252", "Windows-1252, Western Europe", lambda _: True),
+    ):
+        try:
+            if fits(sample[: sample.rfind(b"\n") + 1 or None].decode(encoding)):
+                return encoding, words
+        except UnicodeDecodeError:
+            continue
+    raise ParseError(name, 1, 1, _NO_TEXT)
+
+
+def _is_japanese(text: str) -> bool:
+    """Whether what is decoded as Japanese is: no half-width kana, and no sign within a Latin word.
+
+    Letters with accents, decoded so, give both: 'Größe', 'µm', 'diamètre'.
+    """
+    return not re.search(r"[\uff61-\uff9f\ue000-\uf8ff]|[A-Za-z][\u3040-\u9fff]", text)
 
 
 @dataclass(frozen=True)
@@ -131,6 +182,7 @@ class Rows:
     where: list[tuple[int, str]]
     column_of: Callable[[str, int], int] = word_column
     split: Callable[[str], list[str]] = str.split
+    number: Callable[[str], str] = str.strip  # a cell as Python writes numbers
 
     def error(self, row: int, word: int, message: str) -> ParseError:
         """An error at a word of a row."""
@@ -158,7 +210,7 @@ class Rows:
         for k, name in zip(words, names, strict=True):
             cell = cells[k].strip() if k < len(cells) else ""
             try:
-                value = float(cell)
+                value = float(self.number(cell))
             except ValueError:
                 value = math.nan
             if "_" in cell or not math.isfinite(value):
@@ -185,7 +237,7 @@ class ReadOptions:
     Attributes
     ----------
     frame : number of the frame, from 0; None takes the last.
-    length, time : units of the file in SI [m], [s].
+    length, time, mass : units of the file in SI [m], [s], [kg].
     stated : whether the case states the units.
     fixed_types : types of grains that never move.
     """
@@ -193,12 +245,16 @@ class ReadOptions:
     frame: int | None = None
     length: float = 1.0
     time: float = 1.0
+    mass: float = 1.0
     stated: bool = False
     fixed_types: tuple[int, ...] = ()
 
     def in_si(self, columns: dict[str, Floats]) -> dict[str, Floats]:
         """Columns of the file in SI."""
-        factors = {"m": self.length, "m/s": self.length / self.time, "rad/s": 1.0 / self.time}
+        factors = {
+            "m": self.length, "m/s": self.length / self.time, "rad/s": 1.0 / self.time,
+            "kg": self.mass, "kg/m3": self.mass / self.length**3,
+        }  # fmt: skip
         return {name: values * factors[UNITS[name]] for name, values in columns.items()}
 
     def fixed(self, rows: Rows, word: int | None) -> Bools:
@@ -273,16 +329,20 @@ class FrameHead(Protocol):
 def frame_asked_for(
     lines: Lines, options: ReadOptions, next_head: Callable[[], Head | None]
 ) -> tuple[Head, Rows]:
-    """Head and rows of the frame that the case asks for, the last one where it asks for none.
+    """Head and rows of the frame that the case asks for, the last one with grains where it asks for none.
 
     Parameters
     ----------
     lines : the file.
     next_head : reads the head of the next frame; None at the end of the file.
     """
-    n_frame, kept = 0, None
+    n_frame, kept, empty = 0, None, -1
     while (head := next_head()) is not None:
-        if options.frame in {None, n_frame}:
+        if head.n == 0:
+            empty = n_frame
+            if options.frame == n_frame:
+                raise lines.error(f"build.frame = {n_frame}: this frame holds no grain")
+        elif options.frame in {None, n_frame}:
             kept = head, lines.block(head.n)
         else:
             lines.skip(head.n)
@@ -290,5 +350,7 @@ def frame_asked_for(
         if n_frame - 1 == options.frame:
             break
     if kept is None:
-        raise options.no_such_frame(lines.name, lines.number, n_frame)
+        raise options.no_such_frame(lines.name, lines.number, n_frame - (empty == n_frame - 1 == 0))
+    if empty == n_frame - 1:
+        lines.notes += (f"the last frame of {lines.name} holds no grain: the last that does is read",)
     return kept

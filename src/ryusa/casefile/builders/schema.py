@@ -90,16 +90,20 @@ class TableSection(Section):
     """Name of the builder."""
     file: RelativePath
     """File in the folder of the case. A CSV file has columns x, y, z, d, vx, vy, vz, wx, wy, wz with their
-    units in the header, such as x [cm]; fixed (0 or 1) and group (a name). x, z and d are required."""
+    units in the header, such as x [cm]; m or density; fixed (0 or 1) and group (a name). x, z and d are
+    required. Columns may be separated by commas, semicolons or tabs."""
     format: Literal["csv", "lammps-dump", "lammps-data", "xyz", "vtu"] = "csv"
     """Format of the file: "lammps-data" with atom_style sphere, "xyz" plain or extended, "vtu" of ryusa
-    alone. Where it states no diameters, grains have grains.diameter."""
+    alone. Where it states no diameters, grains have grains.diameter; where it states masses or densities,
+    these hold in place of grains.density."""
     frame: Annotated[Count, Field(ge=0)] | None = None
     """Number of the frame, from 0; the last when not given."""
     length_unit: Annotated[str, _unit_of("m")] = "m"
     """Unit of the lengths in a LAMMPS or xyz file."""
     time_unit: Annotated[str, _unit_of("s")] = "s"
     """Unit of the times in the velocities and spins of a LAMMPS or xyz file."""
+    mass_unit: Annotated[str, _unit_of("kg")] = "kg"
+    """Unit of the masses in a LAMMPS or xyz file, also in its densities."""
     fixed_types: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Atom types of a LAMMPS file whose grains never move; 2 in the dumps of ryusa."""
     allow_overlap: bool = False

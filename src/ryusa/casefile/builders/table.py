@@ -16,10 +16,15 @@ from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import GrainTable
 from ryusa.formats.read import read_grains
 from ryusa.formats.text import ReadOptions
+from ryusa.laws.drag import volume
+from ryusa.model.arrays import Floats
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+
+_SAME = 1e-9  # relative difference of densities that are one
+_LIGHTEST, _HEAVIEST = 1.0, 1.0e5  # densities of a grain [kg/m3]
 
 
 def table_of(case: "Case") -> GrainTable | None:
@@ -68,13 +73,56 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
         frame=build.frame,
         length=quantity(f"1 {build.length_unit}", "m"),
         time=quantity(f"1 {build.time_unit}", "s"),
+        mass=quantity(f"1 {build.mass_unit}", "kg"),
         stated=given(build, "length_unit") and given(build, "time_unit"),
         fixed_types=build.fixed_types,
     )
     table = contents(case, "build.file", build.file, path, partial(_read, build.format, options))
+    heavy = {"density", "m"} & table.columns.keys()
+    if heavy and given(build, "length_unit") and not given(build, "mass_unit"):
+        # a file in centimetres may count in grams
+        note = f"masses of {table.name} are not used: their unit is not known (build.mass_unit not given)"
+        columns = {name: one for name, one in table.columns.items() if name not in heavy}
+        table = replace(table, columns=columns, notes=(*table.notes, note))
     if "d" in table.columns:
         return table
-    return replace(table, columns={**table.columns, "d": np.full(table.n, reference_diameter(case))})
+    d = reference_diameter(case)
+    note = f"{table.name} states no sizes (radius, diameter, ...): all grains have d = {1000.0 * d:.4g} mm"
+    return replace(table, columns={**table.columns, "d": np.full(table.n, d)}, notes=(*table.notes, note))
+
+
+def densities_of_file(case: "Case") -> Floats | None:
+    """Density of each row of a table of grains [kg/m3], by its densities or masses.
+
+    None where the table states neither, or that of the case, and where the case has materials.
+    """
+    if not isinstance(case.build, TableSection) or case.materials:
+        return None
+    table = _table_of_file(case, case.build)
+    found = table.columns.get("density")
+    if found is None and np.any(m := table.column("m")):
+        found = m / np.array([volume(one, case.grains.shape_volume) for one in table.column("d").tolist()])
+    if found is None or np.allclose(found, case.grains.density, rtol=_SAME, atol=0.0):
+        return None
+    free = ~table.fixed
+    wrong = np.flatnonzero(free & ~((found >= _LIGHTEST) & (found <= _HEAVIEST)))
+    if len(wrong):
+        row = int(wrong[0])
+        raise CaseError(
+            "build.file", table.name,
+            f"a density from {_LIGHTEST:g} to {_HEAVIEST:g} kg/m3 is expected, found {found[row]:.4g} kg/m3 "
+            f"{table.labels[row]}; is build.mass_unit right?",
+        )  # fmt: skip
+    return np.where(free, found, case.grains.density)
+
+
+def lightest_in_file(case: "Case") -> "Case":
+    """The case with the least density of its free grains, where a table states densities."""
+    found = densities_of_file(case)
+    if found is None:
+        return case
+    grains = case.grains.model_copy(update={"density": float(found.min())})
+    return case.model_copy(update={"grains": grains})
 
 
 @lru_cache(maxsize=4)

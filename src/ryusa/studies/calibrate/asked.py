@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ryusa.casefile.files import toml_text
 from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, ParseError
 from ryusa.spelling import nearest_word
@@ -146,7 +147,7 @@ def read_calibration(path: Path) -> CalibrationAsked:
     ParseError : the file is no TOML.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(toml_text(path))
     except OSError as error:
         raise CaseError(
             "study", str(path), f"cannot be read ({error.strerror or error}); needs a TOML file"

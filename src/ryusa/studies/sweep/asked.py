@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ryusa.casefile.files import toml_text
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
 from ryusa.studies.sweep.design import (
@@ -167,7 +168,7 @@ def text_of(key: str, value: object) -> str:
 def is_sweep_file(path: Path) -> bool:
     """Whether a file holds a table `[sweep]`; what cannot be read is left to the reader of cases."""
     try:
-        return TABLE in tomllib.loads(path.read_text(encoding="utf-8"))
+        return TABLE in tomllib.loads(toml_text(path))
     except (OSError, ValueError, RecursionError):
         return False
 
@@ -179,7 +180,7 @@ def read_sweep(path: Path) -> SweepFile:
     ------
     CaseError : names the key, its value and what is allowed.
     """
-    data = tomllib.loads(path.read_text(encoding="utf-8"))
+    data = tomllib.loads(toml_text(path))
     for name in data:
         if name != TABLE:
             raise CaseError(
