@@ -47,7 +47,10 @@ def description_at(path: Sequence[str | int], data: dict[str, Any]) -> str:
 
 
 # Names that other programs give to a key, too unlike it to be misspellings.
-_OTHER_NAMES = dict.fromkeys(("dt", "timestep", "time_step"), "time.step")
+_OTHER_NAMES = {
+    **dict.fromkeys(("dt", "timestep", "time_step"), "time.step"),
+    **dict.fromkeys(("radius", "mean_radius", "size"), "grains.diameter"),
+}
 
 
 def nearest_key(path: Sequence[str | int], data: dict[str, Any]) -> str | None:

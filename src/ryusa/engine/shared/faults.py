@@ -42,9 +42,12 @@ def unsafe_of(grains: Any, n: int, parameters: Floats, smallest: float, step: in
     """The fastest grain, which went too far in one step."""
     speed = np.linalg.norm(grains.v[:n, :3], axis=1)
     place = int(speed.argmax())
-    displacement = speed[place] * parameters[P.DT] / smallest
+    way, own = speed[place] * parameters[P.DT], 2.0 * grains.x[place, 3]
+    found = f"a grain moves {way / own:.2g} diameters in one step ({speed[place]:.3g} m/s)"
+    if own > 1.001 * smallest:
+        found += f", {way / smallest:.2g} diameters of the smallest grain of the scene ({smallest:.3g} m)"
     return ListUnsafe(
-        f"a grain moves {displacement:.2g} diameters in one step ({speed[place]:.3g} m/s)",
+        found,
         grain=int(grains.ids[place]),
         step=step,
         t=t,
