@@ -29,7 +29,9 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command that was given."""
         try:
-            return super().invoke(ctx)
+            answer = super().invoke(ctx)
+            _say_what_pictures_lack()
+            return answer
         except RyusaError as error:
             typer.echo(f"ryusa: {error}", err=True)
             raise typer.Exit(error.exit_code) from None
@@ -40,6 +42,11 @@ class Commands(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands in the order of a typical workflow."""
         return list(self.commands)
+
+
+def _say_what_pictures_lack() -> None:
+    if (fonts := sys.modules.get("ryusa.figures.fonts")) and (said := fonts.signs_without_font()):
+        typer.echo(f"ryusa: {said}", err=True)
 
 
 app = typer.Typer(

@@ -1,7 +1,8 @@
 """Style of all figures: column width, thin frame, colours distinct without colour vision or in grey."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from textwrap import fill
@@ -14,6 +15,8 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+
+from ryusa.figures.fonts import families, signs_watched
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Figure])
 
@@ -34,7 +37,6 @@ SHORT, SHORTEST = 200.0, 4.0  # ratios of the ends of a logarithmic axis, see `l
 
 HOUSE: Any = {
     "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
     "axes.labelsize": 8.0,
@@ -67,12 +69,19 @@ HOUSE: Any = {
 }
 
 
+@contextmanager
+def applied() -> Generator[None]:
+    """Draw within this block in the common style; what no font has is noted (fonts.py)."""
+    with mpl.rc_context(HOUSE | {"font.sans-serif": families()}), signs_watched():
+        yield
+
+
 def house(draw: Drawing) -> Drawing:
     """Decorator of all functions that make a figure: apply the common style."""
 
     @wraps(draw)
     def styled(*args: Any, **how: Any) -> Any:
-        with mpl.rc_context(HOUSE):
+        with applied():
             return draw(*args, **how)
 
     return cast(Drawing, styled)
@@ -85,7 +94,7 @@ class _ShownFigure(Figure):
 
     def _repr_png_(self) -> bytes:
         held = io.BytesIO()
-        with mpl.rc_context(HOUSE):
+        with applied():
             self.savefig(held, format="png", dpi=SCREEN_DPI)
         return held.getvalue()
 
@@ -112,7 +121,7 @@ def save(figure: Figure, path: Path | str) -> Path:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     still = {"Date": None} if path.suffix in {".svg"} else None  # the same picture gives the same bytes
-    with mpl.rc_context(HOUSE):
+    with applied():
         figure.savefig(path, dpi=DPI, metadata=still)
     return path
 

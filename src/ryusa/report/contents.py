@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, called, load
 from ryusa.errors import RyusaError
+from ryusa.figures.style import applied
 from ryusa.measure._run import settle_time
 from ryusa.measure.long_section import LongSection
 from ryusa.measure.table import ROUND_OFF
@@ -265,7 +266,8 @@ def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
     else:
         figure, _ = called(entry)(results)
     held = io.BytesIO()
-    figure.savefig(held, format="png", dpi=DPI, pil_kwargs={"compress_level": 0})  # packed by `embedded`
+    with applied():
+        figure.savefig(held, format="png", dpi=DPI, pil_kwargs={"compress_level": 0})  # packed by `embedded`
     held.seek(0)
     wide = float(figure.get_size_inches()[0]) > _ONE_COLUMN
     found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), wide))
