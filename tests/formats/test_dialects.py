@@ -207,21 +207,24 @@ TABLE = "x [mm];y [mm];z [mm];d [mm];vz [m/s]\n0;0;3;2;-0,3\n5;0;3;2,5;-0,3\n"
 @pytest.mark.parametrize(
     "content",
     [
-        TABLE.encode(),
-        TABLE.replace(";", "\t").encode(),
-        TABLE.replace("\n", ";\n").encode(),
-        TABLE.replace("\n", ";;\r\n").encode(),
-        TABLE.replace(",", ".").replace(";", ",").encode(),
-        b"\xef\xbb\xbf" + TABLE.encode(),
-        TABLE.replace(";", "\t").encode("utf-16"),
-        gzip.compress(TABLE.encode()),
-        ("# 礫の座標\n" + TABLE).encode("cp932"),
-        ("# Größe in mm, µ = 0,5\n" + TABLE).encode("cp1252"),
-        TABLE.translate(FULL_WIDTH).encode(),
-        TABLE.replace("-0,3", '"-0,3"').replace("2,5", '"2,5"').encode(),
-        TABLE.replace("-0,3", '"-0,3"').replace("2,5", '"2,5"').replace(";", ",").encode(),
+        pytest.param(TABLE.encode(), id="semicolons"),
+        pytest.param(TABLE.replace(";", "\t").encode(), id="tabs"),
+        pytest.param(TABLE.replace("\n", ";\n").encode(), id="empty last column"),
+        pytest.param(TABLE.replace("\n", ";;\r\n").encode(), id="two of them, lines of Windows"),
+        pytest.param(TABLE.replace(",", ".").replace(";", ",").encode(), id="commas"),
+        pytest.param(b"\xef\xbb\xbf" + TABLE.encode(), id="byte-order mark"),
+        pytest.param(TABLE.replace(";", "\t").encode("utf-16"), id="UTF-16"),
+        pytest.param(gzip.compress(TABLE.encode(), mtime=0), id="gzip"),
+        pytest.param(("# 礫の座標\n" + TABLE).encode("cp932"), id="Shift-JIS"),
+        pytest.param(("# Größe in mm, µ = 0,5\n" + TABLE).encode("cp1252"), id="Windows-1252"),
+        pytest.param(TABLE.translate(FULL_WIDTH).encode(), id="full width"),
+        pytest.param(TABLE.replace("-0,3", '"-0,3"').replace("2,5", '"2,5"').encode(), id="quoted"),
+        pytest.param(
+            TABLE.replace("-0,3", '"-0,3"').replace("2,5", '"2,5"').replace(";", ",").encode(),
+            id="quoted decimal commas between commas",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_table_is_read_as_every_country_writes_it(tmp_path, content):
     path = tmp_path / "g.csv"
     path.write_bytes(content)
