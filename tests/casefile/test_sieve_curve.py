@@ -113,7 +113,8 @@ def test_a_curve_that_cannot_be_is_refused_by_key_and_reason(curve: str, parts: 
         ("diameter [mm],finer\n1,0\n2,100\n", "gravel.csv:1:15: column 'finer' needs its unit"),
         ("diameter [mm],finer [mm]\n1,0\n2,100\n", "in percent"),
         ("diameter [mm]\n1\n2\n", "column 'finer' is missing"),
-        ("diameter [mm];finer [%]\n1;0\n2;100\n", "separated by commas"),
+        ("diameter [mm] finer [%]\n1 0\n2 100\n", "cannot read the unit"),
+        ("diameter [mm];finer [%]\n1;0\n2\n", "gravel.csv:3:1: line 3 has 1 cells, the header has 2"),
         ("size [mm],finer [%]\n1,0\n2,100\n", "unknown column 'size'"),
         ("d [mm],diameter [mm],finer [%]\n1,1,0\n2,2,100\n", "appears twice"),
         ("# bed\ndiameter [mm],finer [%]\n1,0\n2\n", "gravel.csv:4:1: line 4 has 1 cells, the header has 2"),
@@ -140,9 +141,9 @@ def test_a_bad_file_is_reported_with_its_line(tmp_path: Path, csv: str, part: st
 def test_a_file_that_is_no_text_or_out_of_the_folder_is_refused(tmp_path: Path) -> None:
     inner = tmp_path / "inner"
     inner.mkdir()
-    (inner / "gravel.csv").write_bytes(b"diameter [mm],finer [%]\n1,0\n\xff\xfe,100\n")
+    (inner / "gravel.csv").write_bytes(b"diameter [mm],finer [%]\n1,0\n\xff\x81,100\n")
     (inner / "case.toml").write_text(TEXT, encoding="utf-8")
-    with pytest.raises(CaseError, match=r"gravel\.csv:\d+:1: expected UTF-8"):
+    with pytest.raises(CaseError, match=r"gravel\.csv:\d+:1: expected text in UTF-8"):
         read(inner / "case.toml")
     (tmp_path / "outer.csv").write_text(CSV, encoding="utf-8")
     (inner / "gravel.csv").unlink()
