@@ -1,6 +1,6 @@
 # ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
 #   make demo     install, run the saltation case, measure it, draw it, write its page
-#   make test     the same, the paper's claims and the validation in short, the checks, the quick tests: ten minutes
+#   make test     the same, the paper's claims and the validation in short, the checks, the quick tests: ten to sixteen minutes
 #   make test-all the same with all tests: an hour
 # `make` alone lists the rest.
 
@@ -83,7 +83,7 @@ demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it, writ
 
 # ---------------------------------------------------------------------------------------------------------- test
 
-test: before-tests ## the demo, the paper's claims and the validation in short, the checks and the quick tests: ten minutes
+test: before-tests ## the demo, the paper's claims and the validation in short, the checks and the quick tests: a quarter of an hour
 	@$(MAKE) --no-print-directory quick
 
 test-all: before-tests ## the same with all tests but `make slow`: an hour; before a release

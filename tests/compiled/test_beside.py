@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numba
 import numpy as np
@@ -61,6 +62,15 @@ def test_the_other_process_compiles_and_this_one_loads(folder, started):
     assert kept.about["seconds"] > 0.0  # in the other process
     scale_by(2.0)
     assert len(started) == 1  # the store has it
+
+
+def test_all_threads_of_a_run_may_ask_at_once(folder, started):
+    (piece,) = Beside([Wanted(make_scale, (8.0,), (numba.types.int64, LENT))]).pieces()
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda _: piece.address, range(4)))
+    assert len(set(found)) == 1
+    assert [one.returncode for one in started] == [0]
+    assert waiting.left() == 0.0
 
 
 def test_a_process_that_breaks_off_is_made_up_for(folder, started, monkeypatch):

@@ -2,17 +2,13 @@
 
 import re
 
-import numba
 import pytest
 from numba.core.caching import NullCache
 from tests.engine.conftest import D, elastic_law, pile
 
 from ryusa.build import scene
 from ryusa.compiled.dispatcher import Pieces
-from ryusa.compiled.piece import LentType
-from ryusa.engine.cpu.block_forces import make_block_forces
 from ryusa.engine.cpu.engine import CpuEngine
-from ryusa.engine.shared.variant import forces_kind
 from ryusa.laws.families import ContactTiming
 
 
@@ -20,17 +16,10 @@ def forces_of(made) -> str:
     """LLVM's text of the forces of contacts of a scene, compiled here and not taken from a store."""
     engine = CpuEngine(threads=1)
     engine.load(*made)
-    held, work = engine._held(0), engine._work[0]
-    piece = make_block_forces(forces_kind(engine._variant, engine._choice))
-    compiler = Pieces(piece, piece.pieces.targetoptions)
+    wanted = engine._pieces.forces
+    compiler = Pieces(wanted.function, wanted.function.pieces.targetoptions)
     compiler._cache = NullCache()
-    integer, number, flag = numba.types.int64, numba.types.float64, numba.types.boolean
-    takes = (
-        integer, integer, integer, number, number, flag,
-        LentType(numba.typeof(work)), LentType(numba.typeof(held)),
-    )  # fmt: skip
-    compiler.compile(takes)
-    return compiler.overloads[takes].library.get_llvm_str()
+    return compiler.made(wanted.takes).library.get_llvm_str()
 
 
 def elastic_pair():

@@ -10,10 +10,13 @@ from ryusa.build import build
 from ryusa.casefile import derive, read
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.csv import read_csv
+from ryusa.formats.extxyz import xyz_frame
+from ryusa.formats.lammps_dump import dump_frame
 from ryusa.formats.line import read_line
 from ryusa.formats.read import read_grains
 from ryusa.formats.sieve import read_sieve_curve
 from ryusa.formats.text import ReadOptions
+from ryusa.formats.vtu import vtu_file
 from ryusa.units import UnitError, quantity
 
 FULL_WIDTH = {ord(one): 0xFEE0 + ord(one) for one in "0123456789[]m."}
@@ -117,7 +120,7 @@ def test_frames_without_grains_are_passed_over(tmp_path, frames):
 
 
 def test_a_file_of_empty_frames_alone_is_refused(tmp_path):
-    with pytest.raises(ParseError):
+    with pytest.raises(ParseError, match="expected a frame of grains, found none"):
         grains(tmp_path, "lammps-dump", dump("id x y z radius", frames=(0, 0)))
 
 
@@ -186,6 +189,16 @@ def test_densities_and_masses_of_a_file_are_those_of_its_grains(tmp_path, kind, 
     alike = read(tmp_path / "case.toml", {"grains.density": "1200 kg/m3"})
     # the lightest grain sets the step
     assert derive(alike).dt == pytest.approx(derive(read(tmp_path / "case.toml")).dt, rel=0.2)
+
+
+def test_masses_of_an_export_in_any_format_are_read(tmp_path):
+    table = grains(tmp_path, "csv", "x [mm],y [mm],z [mm],d [mm],m [mg]\n0,0,3,2,30\n10,0,3,4,40\n")
+    for kind, content in (
+        ("vtu", vtu_file(table)),
+        ("lammps-dump", dump_frame(table)),
+        ("xyz", xyz_frame(table)),
+    ):
+        assert grains(tmp_path, kind, content).column("m").tolist() == table.column("m").tolist()
 
 
 def test_masses_in_a_unit_that_is_not_known_are_not_used(tmp_path):

@@ -16,6 +16,23 @@ from ryusa.model import EVENT, ContactLaw, Scene, State, Tally, Term
 from ryusa.model.tally import N_TERM
 from ryusa.running import loop
 
+DROP = """
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+[contact]
+stiffness = { overlap = 0.01, speed = "0.6 m/s" }
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "locked"
+[build]
+kind = "drop"
+height = "1 cm"
+[stop]
+time = "0.01 s"
+"""
+
 
 def make_scene(n: int = 3, **changes: object) -> Scene:
     d = np.full(n, 2e-3)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.running.conftest import DROP
 
 from ryusa.casefile import derive, estimate, read_text
 from ryusa.compiled import waiting
@@ -20,23 +21,6 @@ from ryusa.running.record_buffer import bytes_per_frame
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
 from ryusa.running.timeline import Change
-
-DROP = """
-[grains]
-diameter = "0.2 cm"
-density = "2650 kg/m3"
-[contact]
-stiffness = { overlap = 0.01, speed = "0.6 m/s" }
-restitution = 0.7
-friction_angle = "30 deg"
-[motion]
-rotation = "locked"
-[build]
-kind = "drop"
-height = "1 cm"
-[stop]
-time = "0.01 s"
-"""
 
 
 @pytest.fixture

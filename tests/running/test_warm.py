@@ -6,28 +6,14 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from tests.running.conftest import DROP
 
 from ryusa.casefile import derive, read_text
 from ryusa.errors import CaseError
 from ryusa.running import warm as warm_module
 from ryusa.running.warm import warm
 
-CASE = """
-[grains]
-diameter = "0.2 cm"
-density = "2650 kg/m3"
-[contact]
-stiffness = { overlap = 0.01, speed = "0.6 m/s" }
-restitution = 0.7
-friction_angle = "30 deg"
-[motion]
-rotation = "locked"
-[build]
-kind = "drop"
-height = "1 cm"
-[stop]
-time = "0.4 s"
-"""
+CASE = DROP.replace("0.01 s", "0.4 s")
 CHANGES = '[[timeline]]\nat = "0.1 s"\nrotation = "free"\n[[timeline]]\nat = "0.3 s"\nslope = 0.1\n'
 ASK = """
 import sys

@@ -65,13 +65,12 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
         allow_overlap=allow_overlap,
         names=tuple(labels),
         density=None if heavy is None else heavy[free],
-        notes=_notes(case, run, grid),
+        notes=_notes(case, run, grid, heavy),
     )
 
 
-def _notes(case: Case, run: str | None, grid: GrainTable) -> tuple[str, ...]:
+def _notes(case: Case, run: str | None, grid: GrainTable, heavy: Floats | None) -> tuple[str, ...]:
     notes = list(grid.notes)
-    heavy = densities_of_file(case)
     if heavy is not None:
         low, high = heavy[~grid.fixed].min(), heavy[~grid.fixed].max()
         shown = f"{low:.4g}" if high - low < 1e-4 * high else f"{low:.4g} to {high:.4g}"

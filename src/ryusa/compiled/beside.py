@@ -12,9 +12,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.typing.templates import signature
 
-from ryusa.compiled import store, tiers, waiting
+from ryusa.compiled import waiting
 from ryusa.compiled.piece import Piece
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Beside:
     """
 
     def __init__(self, wanted: list[Wanted]) -> None:
-        missing = [one for one in wanted if _to_be_compiled(one)] if cores() > 1 else []
+        missing = [one for one in wanted if cores() > 1 and one.function.pieces.may_keep(one.takes)]
         self._process = _started(missing) if missing else None
         self._wanted = wanted
         if self._process is not None:
@@ -63,28 +64,21 @@ class Beside:
         ]
 
     def _found(self, wanted: Wanted) -> Any:
-        function, takes = wanted.function, wanted.takes
-        if self._process is not None:
-            with waiting.asked(function, "piece"):
-                if self._process.poll() is None:
-                    waiting.done_by_another_process()
-                    self._process.wait()
-            self._end()
-            self._process = None
-        function.pieces.compile(takes)
-        return function.pieces.overloads[takes]
+        with global_compiler_lock:  # all threads of a run ask at once
+            if self._process is not None:
+                with waiting.asked(wanted.function, "piece"):
+                    if self._process.poll() is None:
+                        waiting.done_by_another_process()
+                        self._process.wait()
+                self._end()
+                self._process = None
+            return wanted.function.pieces.made(wanted.takes)
 
 
 def cores() -> int:
     """Cores that this process may use."""
     asked = getattr(os, "sched_getaffinity", None)  # not on every system
     return len(asked(0)) if asked else os.cpu_count() or 1
-
-
-def _to_be_compiled(wanted: Wanted) -> bool:
-    kept = wanted.function.pieces.kept
-    keys = [(tier, kept.key(wanted.takes, tier.processor)) for tier in tiers.in_order()]
-    return store.own().can_keep() and all(key is not None and tier.load(key) is None for tier, key in keys)
 
 
 def _started(wanted: list[Wanted]) -> "subprocess.Popen[bytes] | None":

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from numba.core import serialize, sigutils
 from numba.core import types as numba_types
+from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
@@ -59,6 +60,11 @@ class _Kept:
                 continue
         waiting.missed()
         return None
+
+    def may_keep(self, signature: Any) -> bool:
+        """Whether no store has code for these types, and the user's own takes it."""
+        keys = [(tier, self.key(signature, tier.processor)) for tier in tiers.in_order()]
+        return store.own().can_keep() and all(key and tier.load(key) is None for tier, key in keys)
 
     def save_overload(self, signature: Any, made: Any) -> None:
         """Keep what has been compiled; the store answers for disks that are full or closed."""
@@ -115,18 +121,30 @@ def _of_type(one: Any) -> Any:
     return (type(one), str(one))
 
 
-class Inner(CPUDispatcher):  # type: ignore[misc]
-    """Compiles a function for the kernels that call it; it has no entry from Python."""
+class _Dispatcher(CPUDispatcher):  # type: ignore[misc]
+    """Compiles a function of a kind, or loads it from a store."""
+
+    kind: str
+    without: tuple[str, ...] = ("no_cfunc_wrapper",)  # ways to call it that nobody takes
+    pipeline: type[Compiler] = Compiler
 
     def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
-        options = options | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-        super().__init__(function.py_func, targetoptions=options, pipeline_class=InnerPipeline)
-        self.function, self._cache = function, _Kept(function, "inner")
+        options = options | dict.fromkeys(self.without, True)
+        super().__init__(function.py_func, targetoptions=options, pipeline_class=self.pipeline)
+        self.function, self._cache = function, _Kept(function, self.kind)
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the code for these types."""
-        with global_compiler_lock, compiling(), waiting.asked(self.function, "inner"):
+        with global_compiler_lock, compiling(), waiting.asked(self.function, self.kind):
             return super().compile(sig)
+
+
+class Inner(_Dispatcher):
+    """Compiles a function for the kernels that call it; it has no entry from Python."""
+
+    kind = "inner"
+    without = ("no_cpython_wrapper", "no_cfunc_wrapper")
+    pipeline = InnerPipeline
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """The signature for these types: one for a number, be it a constant of the caller or not."""
@@ -137,40 +155,28 @@ class Inner(CPUDispatcher):  # type: ignore[misc]
         self.overloads[tuple(cres.signature.args)] = cres
 
 
-class Pieces(CPUDispatcher):  # type: ignore[misc]
+class Pieces(_Dispatcher):
     """Compiles a function for kernels that call it by its address."""
 
-    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
-        options = options | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-        super().__init__(function.py_func, targetoptions=options)
-        self.function, self._cache = function, _Kept(function, "piece")
+    kind = "piece"
+    without = Inner.without
 
-    @property
-    def kept(self) -> "_Kept":
-        """What stands between this and the stores."""
-        return self._cache
+    def may_keep(self, takes: Any) -> bool:
+        """Whether the code for these types is in no store, and the user's own would take it."""
+        return self._cache.may_keep(takes)
 
-    def compile(self, sig: Any) -> Any:
-        """Load or compile the code for these types."""
-        with global_compiler_lock, compiling(), waiting.asked(self.function, "piece"):
-            return super().compile(sig)
+    def made(self, takes: Any) -> Any:
+        """The code for these types."""
+        self.compile(takes)
+        return self.overloads[takes]
 
-    def piece(self, *given: Any) -> Piece:
+    def piece(self, *takes: Any) -> Piece:
         """The piece for arguments of these types."""
-        self.compile(given)
-        made = self.overloads[given]
+        made = self.made(takes)
         return Piece(made.signature, lambda: made)
 
 
-class Entry(CPUDispatcher):  # type: ignore[misc]
+class Entry(_Dispatcher):
     """Compiles a function for calls from Python, with all that it calls built into it."""
 
-    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
-        options = options | {"no_cfunc_wrapper": True}
-        super().__init__(function.py_func, targetoptions=options)
-        self.function, self._cache = function, _Kept(function, "entry")
-
-    def compile(self, sig: Any) -> Any:
-        """Load or compile the code for these types."""
-        with global_compiler_lock, compiling(), waiting.asked(self.function, "entry"):
-            return super().compile(sig)
+    kind = "entry"

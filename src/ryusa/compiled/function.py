@@ -115,7 +115,7 @@ class Compiled:
 class Law(Compiled):
     """A scalar law: compiled into the kernels that call it, plain Python for everybody else.
 
-    So a program that checks a case or measures a run compiles nothing. What Python refuses, a division by
+    So a program that checks a case compiles nothing, nor do most measures. What Python refuses, a division by
     zero, the root of a negative number or an overflow, is left to the compiled law, which gives inf or nan.
     """
 

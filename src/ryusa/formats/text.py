@@ -336,13 +336,12 @@ def frame_asked_for(
     lines : the file.
     next_head : reads the head of the next frame; None at the end of the file.
     """
-    n_frame, kept, empty = 0, None, -1
+    n_frame, kept, empty = 0, None, False
     while (head := next_head()) is not None:
-        if head.n == 0:
-            empty = n_frame
-            if options.frame == n_frame:
-                raise lines.error(f"build.frame = {n_frame}: this frame holds no grain")
-        elif options.frame in {None, n_frame}:
+        empty = head.n == 0
+        if empty and options.frame == n_frame:
+            raise lines.error(f"build.frame = {n_frame}: this frame holds no grain")
+        if not empty and options.frame in {None, n_frame}:
             kept = head, lines.block(head.n)
         else:
             lines.skip(head.n)
@@ -350,7 +349,8 @@ def frame_asked_for(
         if n_frame - 1 == options.frame:
             break
     if kept is None:
-        raise options.no_such_frame(lines.name, lines.number, n_frame - (empty == n_frame - 1 == 0))
-    if empty == n_frame - 1:
+        n_held = 0 if options.frame is None else n_frame
+        raise options.no_such_frame(lines.name, lines.number, n_held)
+    if empty:
         lines.notes += (f"the last frame of {lines.name} holds no grain: the last that does is read",)
     return kept

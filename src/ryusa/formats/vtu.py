@@ -91,6 +91,7 @@ _READ = {  # array: its type and width, 0 for one number a grain
     "velocity": ("Float64", 3),
     "spin": ("Float64", 3),
     "diameter": ("Float64", 0),
+    "mass": ("Float64", 0),
     "id": ("Int64", 0),
     "fixed": ("UInt8", 0),
 }
@@ -122,6 +123,7 @@ def read_vtu(path: Path, name: str) -> GrainTable:
         "velocity": (-LARGEST, LARGEST),
         "spin": (-LARGEST, LARGEST),
         "diameter": (D_LOW, D_HIGH),
+        "mass": (0.0, LARGEST),
     }.items():
         wrong = ~((found[one] >= low) & (found[one] <= high))
         if wrong.any():
@@ -141,8 +143,9 @@ def read_vtu(path: Path, name: str) -> GrainTable:
         where = stored["period"]
         raise ParseError(name, where.line, where.column, "expected periods above 0")
     order = np.argsort(found["id"], kind="stable")
-    names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz")
-    arrays = [found["Points"], found["diameter"][:, None], found["velocity"], found["spin"]]
+    names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
+    alone = found["diameter"][:, None], found["mass"][:, None]
+    arrays = [found["Points"], alone[0], found["velocity"], found["spin"], alone[1]]
     ids = found["id"][order]
     return GrainTable(
         name=name,

@@ -47,6 +47,10 @@ class PiecesOfStep:
 
     Forces and motion are half of all that is compiled; another process begins with them (compiled/beside.py),
     while this one compiles what lists and prunes pairs.
+
+    Attributes
+    ----------
+    forces : what the forces of contacts are compiled from and for.
     """
 
     def __init__(self, variant: KernelVariant, choice: LawChoice, held: StepArrays, work: Workspace) -> None:
@@ -57,13 +61,9 @@ class PiecesOfStep:
         # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
         self._prune = make_prune(bool(variant.walls))
         self._move_bodies = make_move_bodies(moving) if variant.bodies else None
-        forces = integer, integer, integer, number, number, flag, *lent
-        self._beside = Beside(
-            [
-                Wanted(make_block_forces, (forces_kind(variant, choice),), forces),
-                Wanted(make_integrate, (moving,), self._moves),
-            ]
-        )
+        takes = integer, integer, integer, number, number, flag, *lent
+        self.forces = Wanted(make_block_forces, (forces_kind(variant, choice),), takes)
+        self._beside = Beside([self.forces, Wanted(make_integrate, (moving,), self._moves)])
 
     @cached_property
     def prune(self) -> Piece:
