@@ -18,6 +18,7 @@ def impact(folder, stiffness, steps, **more):
     overrides = {
         "contact.stiffness": f"{stiffness} N/cm",
         "contact.friction_angle": "30 deg",
+        "contact.slip": "spring",  # what `reference` integrates
         "motion.gravity": "1e-9 m/s2",
         "build.height": "0 cm",
         "build.speed": "0.3 m/s",

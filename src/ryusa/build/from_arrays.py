@@ -52,7 +52,7 @@ def scene(
     restitution: float = 0.7,
     restitution_shear: float | None = None,
     friction: float = math.tan(math.radians(30.0)),
-    slip: Slip = Slip.SPRING,
+    slip: Slip = Slip.TOTAL,
     tension: bool = False,
     timing: ContactTiming = ContactTiming.EXACT,
     contact: ContactLaw | None = None,

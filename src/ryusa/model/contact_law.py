@@ -23,7 +23,7 @@ def elastic_spheres(
     restitution_shear: float | None = None,
     damping_law: DampingLaw = DampingLaw.THORNTON,
     unloading: Unloading = Unloading.RESCALED,
-    slip: Slip = Slip.SPRING,
+    slip: Slip = Slip.TOTAL,
     cap: Cap | None = None,
     cohesion: float = 0.0,
     adhesion: Adhesion = Adhesion.NONE,

@@ -72,8 +72,8 @@ class ContactLaw:
     zeta_s: float = 0.0
     eta_n: float = 0.0  # dashpots [N s/m], used if damping is CONSTANTS
     eta_s: float = 0.0
-    slip: Slip = Slip.SPRING
-    cap: Cap = Cap.SPRING
+    slip: Slip = Slip.TOTAL
+    cap: Cap = Cap.TOTAL
     tension: bool = False  # whether the dashpot may pull before the overlap ends
     timing: ContactTiming = ContactTiming.EXACT
     # elastic spheres, HERTZ_MINDLIN; contacts begin and end at steps then

@@ -17,7 +17,7 @@ from ryusa.casefile.contact.values import (
 )
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
 from ryusa.laws import collision, hertz
-from ryusa.laws.families import Adhesion
+from ryusa.laws.families import Adhesion, Slip
 from ryusa.laws.rolling import torque_of_slipping_disc
 from ryusa.model.contact_law import attraction_of, pull_off_of, rest_overlap_of, sticking_speed_of
 
@@ -54,6 +54,7 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     rows = [number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg")]
     if case.contact.cohesion:
         rows.append(number("contact", "cohesion c", case.contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
+    rows.append(_coulomb_row(case, derived))
     rows += _adhesion_rows(case, derived)
     if case.rolling.twisting_coefficient > 0.0:
         speed, radius = expected_speed(case)[0], 0.25 * derived.d
@@ -65,6 +66,28 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         )
         rows.append(number("contact", "twisting coefficient", case.rolling.twisting_coefficient, "-", origin))
     return rows
+
+
+def _coulomb_row(case: "Case", derived: "Derived") -> ExplainRow:
+    """Whether the tangential force of a contact can exceed mu N, and by what."""
+    rule, cap = Slip.of(case.contact.slip), case.contact.cap
+    limit = "c + mu N" if case.contact.cohesion else "mu N"
+    if "total" in rule.marks:
+        return word("contact", "Coulomb limit", "holds", f"spring and dashpot together carry at most {limit}")
+    beyond = list[str]()
+    if derived.fixed.zeta_s > 0.0:
+        beyond.append(
+            "the tangential dashpot is left out of it until the contact slides"
+            if "drop" in rule.marks
+            else "the tangential dashpot is not limited: grains creep on slopes steeper than mu and a grain "
+            "without friction is turned"
+        )
+    if cap != "total" and derived.fixed.zeta_n > 0.0:
+        beyond.append("N is the force of the spring, which exceeds the whole normal force in unloading")
+    if not beyond:
+        return word("contact", "Coulomb limit", "holds", f"the spring carries at most {limit}, without dashpot")
+    origin = f"with contact.slip '{rule.word}' a contact can carry more than {limit}: {'; '.join(beyond)}"
+    return word("contact", "Coulomb limit", "can be exceeded", f"{origin}; 'total' holds it", "note")
 
 
 def _adhesion_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:

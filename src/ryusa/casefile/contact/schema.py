@@ -112,9 +112,10 @@ class ContactSection(Section):
     adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
     """Energy density with adhesion = "contact area", the attraction per contact area pi R_e x, x the overlap;
     half of it is the cohesion energy density of LIGGGHTS' sjkr."""
-    slip: Annotated[str, WordOf(families.Slip)] = "spring"
-    """Force that the Coulomb limit caps: "spring" caps the tangential spring and keeps the dashpot,
-    "spring-drop" caps the spring and drops the dashpot while sliding, "total" caps their sum."""
+    slip: Annotated[str, WordOf(families.Slip)] = "total"
+    """Force that the Coulomb limit caps: "total" caps the sum of tangential spring and dashpot, "spring-drop"
+    caps the spring and drops the dashpot while sliding, "spring", the reading of Eq. (3) as printed, caps the
+    spring and keeps the dashpot, so that a sliding contact can carry more than mu N."""
     cap: Annotated[str, WordOf(families.Cap)] | None = None
     """Normal force in the Coulomb limit: that of the spring, e_n, or the total, f_n; "total" when not given
     with slip = "total", else "spring"."""

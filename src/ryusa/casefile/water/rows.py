@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 ROUND, NATURAL = 6.0, 3.5  # roundness on the scale of Powers
 LEAST_COREY = 0.2  # below, the fit of Dietrich does not hold
-APART = 0.1  # relative difference between two friction velocities that is worth a note
+APART = 0.1  # relative difference between two speeds that is worth a note
 
 
 def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow]:
@@ -38,7 +38,22 @@ def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow
             number("water", "settling velocity", settling, "m/s", f"of a single mean grain, drag {wet.drag}"),
             number("water", "grain Re", re, "-", "settling velocity times d/nu"),
         ]
+        if case.grains.density > wet.density:
+            rows.append(_of_natural_sand(case, derived, wet, settling))
     return [*rows, *_of_clumps(case, derived, wet)]
+
+
+def _of_natural_sand(case: "Case", derived: "Derived", wet: WaterSection, settling: float) -> ExplainRow:
+    """Settling velocity of natural sand of the mean diameter, beside that of the grains of the case."""
+    ratio = case.grains.density / wet.density - 1.0
+    sand = drag.terminal_velocity_ferguson_church(ratio, derived.g, derived.d, wet.viscosity, 18.0, 1.0)
+    origin, apart = "Ferguson & Church 2004, of this diameter", settling / sand - 1.0
+    far: Flag = "note" if abs(apart) > APART else ""
+    if far:
+        origin += f"; the grains of the case settle {abs(apart):.0%} {'faster' if apart > 0.0 else 'slower'}"
+        if wet.drag != "Ferguson-Church sand":
+            origin += "; drag 'Ferguson-Church sand' is that of natural sand"
+    return number("water", "settling velocity of natural sand", sand, "m/s", origin, far)
 
 
 def _of_clumps(case: "Case", derived: "Derived", wet: WaterSection) -> list[ExplainRow]:

@@ -42,8 +42,9 @@ class WaterSection(Section):
     """Density of water, rho_w."""
     viscosity: Annotated[Viscosity, Field(ge=1.0e-12, le=1.0e3)] = 1.0e-6
     """Kinematic viscosity nu."""
-    drag: Annotated[str, WordOf(families.Drag)] = "24/Re+0.4"
-    """Law of the drag coefficient C_D."""
+    drag: Annotated[str, WordOf(families.Drag)] = "Schiller-Naumann"
+    """Law of the drag coefficient C_D; the default is that of smooth spheres, natural sand of the same
+    diameter settles more slowly ("Ferguson-Church sand")."""
     drag_coefficient: Annotated[Number, Field(ge=0)] = 0.4
     """C_D of drag = "constant"."""
     drag_of_form: Annotated[str, WordOf(families.DragOfForm)] = "Bagheri-Bonadonna"
