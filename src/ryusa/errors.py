@@ -92,17 +92,12 @@ class RunError(RyusaError):
     exit_code = 3
 
     def __init__(
-        self, cause: str, *, grain: int, step: int, t: float, hint: str, partner: int | None = None
-    ) -> None:
-        self.cause, self.grain, self.step, self.t, self.hint, self.partner = (
-            cause,
-            grain,
-            step,
-            t,
-            hint,
-            partner,
-        )
-        pair = "" if partner is None else f" with partner {partner}"
+        self, cause: str, *, grain: int, step: int, t: float, hint: str, partner: int | None = None,
+        surface: str = "",
+    ) -> None:  # fmt: skip
+        self.cause, self.grain, self.step, self.t, self.hint = cause, grain, step, t, hint
+        self.partner, self.surface = partner, surface  # the name of the plane or wall that the partner is
+        pair = f" with {surface}" if surface else "" if partner is None else f" with partner {partner}"
         super().__init__(f"{cause}: grain {grain}{pair}, step {step}, t = {t:.6g} s. {hint}")
 
 
@@ -116,6 +111,10 @@ class GrainLost(RunError):
 
 class OverlapTooLarge(RunError):
     """The overlap of two grains exceeds the limit."""
+
+
+class GrainThroughWall(RunError):
+    """The centre of a grain went through a face of a wall, which then would push it on."""
 
 
 class ListUnsafe(RunError):

@@ -115,11 +115,12 @@ def test_the_reasons_for_defaults_name_the_defaults_of_the_reference() -> None:
     kept = {}
     for line in reference.splitlines():
         if line.startswith("| `"):
-            key, _, default, _ = (cell.strip(" `\"") for cell in re.split(r"(?<!\\) \| ", line[2:-2]))
+            key, _, default, _ = (cell.strip(' `"') for cell in re.split(r"(?<!\\) \| ", line[2:-2]))
             kept[key] = default
     rows = [line[2:-2].split(" | ") for line in reasons.splitlines() if line.startswith("| `")]
     assert len(rows) > 20
     for keys, said, *_ in rows:
-        key, word = keys.split(",")[0].strip("` "), re.split(r'[,"]|(?<=\d) ', said.strip('`" '))[0].strip("` ")
+        key = keys.split(",")[0].strip("` ")
+        word = re.split(r'[,"]|(?<=\d) ', said.strip('`" '))[0].strip("` ")
         if kept[key] and not (word == "none" and kept[key] in ("0", "none")):
             assert word and kept[key].startswith(word), key

@@ -1,15 +1,16 @@
-"""Coulomb's limit with the contact law that holds where none is named: slopes, floors without friction, impacts."""
+"""Coulomb's limit where no contact law is named: slopes, floors without friction, impacts."""
 
 import math
 
 import numpy as np
 import pytest
+from tests.engine.conftest import D, M, run
+from tests.kernel_variants import full_but
 
 from ryusa.build import rectangle, scene
 from ryusa.laws.families import ContactTiming, Drag, Profile, Slip
 from ryusa.model.contact_law import elastic_spheres
 from ryusa.model.scene import Water
-from tests.engine.conftest import D, M, run
 
 G = 9.80665
 LAWS = ("exact", "at steps", "Hertz")
@@ -34,8 +35,9 @@ def at_rest(mu, law, on, **more):
     return made[0], run(made, steps).state(), steps * made[0].dt
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("on", [FLOOR, SHEET], ids=["plane", "wall"])
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", full_but(["exact"], LAWS))
 @pytest.mark.parametrize(("slope", "mu"), [(45, 0.3), (30, 0.1), (20, 0.0), (60, 0.9), (10, 0.3)])
 def test_a_grain_that_cannot_turn_slides_as_coulomb_says(slope, mu, law, on):
     tilt = math.radians(slope)
@@ -44,13 +46,14 @@ def test_a_grain_that_cannot_turn_slides_as_coulomb_says(slope, mu, law, on):
     assert found.v[0, 0] == pytest.approx(expected, rel=5e-3, abs=2e-4)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", full_but(["exact"], LAWS))
 def test_a_grain_on_a_floor_without_friction_slides_and_is_not_turned(law):
     _, found, _ = at_rest(0.0, law, FLOOR, v=[[0.5, 0.0, 0.0]])
     assert found.v[0, 0] == pytest.approx(0.5, rel=1e-12)
     assert np.abs(found.omega[0]).max() == 0.0
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("law", LAWS)
 def test_a_grain_without_friction_slides_down_a_slope_under_still_water(law):
     still = Water(profile=Profile.STILL, drag=Drag.NONE)
@@ -60,7 +63,7 @@ def test_a_grain_without_friction_slides_down_a_slope_under_still_water(law):
     assert np.abs(found.omega[0]).max() == 0.0
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", full_but(["exact"], LAWS))
 @pytest.mark.parametrize("along", [0.5, 5.0, 30.0])
 @pytest.mark.parametrize("mu", [0.0, 0.1, 0.5])
 def test_the_tangential_impulse_of_an_impact_is_at_most_mu_times_the_normal_one(law, along, mu):
@@ -76,6 +79,7 @@ def test_the_tangential_impulse_of_an_impact_is_at_most_mu_times_the_normal_one(
         assert share == pytest.approx(mu, rel=1e-3)
 
 
+@pytest.mark.full
 def test_the_paper_s_reading_is_still_there():
     made = scene([[0.0, 0.0, 0.5 * D - 1e-9]], D, rotation=False, slope=math.radians(45), friction=0.3,
                  restitution=0.6, slip=Slip.SPRING, allow_overlap=True, **FLOOR)  # fmt: skip

@@ -184,8 +184,9 @@ class GrainPool:
             partner = int(self._partners_out(np.array([partner]))[0])
         grain = int(self._ids[fault.grain]) if 0 <= fault.grain < len(self._ids) else fault.grain
         return type(fault)(
-            fault.cause, grain=grain, step=fault.step, t=fault.t, hint=fault.hint, partner=partner
-        )
+            fault.cause, grain=grain, step=fault.step, t=fault.t, hint=fault.hint, partner=partner,
+            surface=fault.surface,
+        )  # fmt: skip
 
     def _state_of(self, state: State) -> State:
         """The state of the grains that are there, for the engine."""

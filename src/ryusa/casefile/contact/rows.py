@@ -85,7 +85,7 @@ def _coulomb_row(case: "Case", derived: "Derived") -> ExplainRow:
     if cap != "total" and derived.fixed.zeta_n > 0.0:
         beyond.append("N is the force of the spring, which exceeds the whole normal force in unloading")
     if not beyond:
-        return word("contact", "Coulomb limit", "holds", f"the spring carries at most {limit}, without dashpot")
+        return word("contact", "Coulomb limit", "holds", f"the spring carries at most {limit}; no dashpot")
     origin = f"with contact.slip '{rule.word}' a contact can carry more than {limit}: {'; '.join(beyond)}"
     return word("contact", "Coulomb limit", "can be exceeded", f"{origin}; 'total' holds it", "note")
 

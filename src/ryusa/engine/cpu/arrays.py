@@ -74,12 +74,12 @@ class CandidateArrays(NamedTuple):
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
     # only in scenes with walls, else of length 0
-    face: Any  # candidates that are faces, for each block from first[b] on, (n_near,)
+    face: Any  # candidates that are planes or faces, for each block from first[b] on, (n_near,)
     face_grain: Any  # their grains, (n_near,)
-    face_number: Any  # numbers of the faces, (n_near,)
-    slot: Any  # place of each candidate that is a face among those of its block, (n_near,)
-    met: Any  # how grains and faces of a block meet (faces.py), workspace of its thread, (n_near, N_MET)
-    face_count: Any  # how many faces are candidates, (n_block,)
+    face_number: Any  # numbers of the planes, then of the faces, (n_near,)
+    slot: Any  # place of each candidate that is one of them among those of its block, (n_near,)
+    met: Any  # how grains meet them in a block (faces.py), workspace of its thread, (n_near, N_MET)
+    face_count: Any  # how many of them are candidates, (n_block,)
 
 
 class WallArrays(NamedTuple):

@@ -87,5 +87,8 @@ MINDLIN = 122 * PITCH  # tangential stiffness of elastic spheres over K sqrt(ove
 MU_OF_EVENT = 123 * PITCH
 K_N_OF_EVENT = 124 * PITCH  # of the law, not of the map [N/m]
 K_S_OF_EVENT = 125 * PITCH
-SIZE = 126 * PITCH
+# Only in scenes with walls:
+SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its books held before [J]
+KEPT = 127 * PITCH
+SIZE = 133 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

@@ -22,7 +22,14 @@ from ryusa.engine.cpu.pair_batch import (
 from ryusa.engine.cpu.pair_physics import make_immersed_dashpots, make_optional_physics
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
-from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, resolve_walls
+from ryusa.engine.cpu.wall_contacts import (
+    add_drift,
+    book_walls,
+    keep_books,
+    resolve_walls,
+    share_of,
+    take_shares,
+)
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -65,19 +72,24 @@ def track_overlap(
 
 
 @inner(fastmath=FAST)
-def spring_energy(b: int, c: Any, candidates: CandidateArrays) -> tuple[float, float, int]:
-    """Energy in the normal and tangential springs of block b [J], and its contacts."""
+def spring_energy(
+    b: int, n_solid: int, c: Any, candidates: CandidateArrays, met: Any
+) -> tuple[float, float, int]:
+    """Energy in normal and tangential springs of block b [J], and its contacts; `met` may be None."""
     k_n, k_s, rows = c[P.K_N], c[P.K_S], candidates.rows
     normal = tangential = 0.0
     count = 0
     for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
         if candidates.touching[k]:
             e_n, s_x, s_y, s_z = springs_of_row(k, rows)
+            half = 0.5
+            if met is not None:
+                half *= share_of(k, n_solid, candidates, met)
             if k_n > 0.0:
-                normal += 0.5 * e_n * e_n / k_n
+                normal += half * e_n * e_n / k_n
             if k_s > 0.0:
                 for force in (s_x, s_y, s_z):
-                    tangential += 0.5 * force**2 / k_s
+                    tangential += half * force**2 / k_s
             count += 1
     return normal, tangential, count
 
@@ -136,7 +148,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
         if walled:
             met = met[candidates.first[b_0] :]  # the same rows for all blocks of a thread stay in its cache
             given = stats[S.PENDING_WALL]
-            resolve_walls(b, reach_on, c, grains, walls.faces, candidates, met)
+            resolve_walls(b, reach_on, n_solid, c, grains, walls, candidates, met, stats)
         k = candidates.first[b]
         end = k + candidates.count[b]
         waiting = 0
@@ -162,6 +174,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
             )  # fmt: skip
             if walled:
                 add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
+                keep_books(face_lanes, selected, slot, met, batch)
             if rebound:
                 immersed_dashpots(choice, m, selected, c, material, table, grains, candidates, batch)
             if hertz or not exact:
@@ -173,6 +186,8 @@ def make_block_forces(kind: ForcesKind) -> Any:
                 )  # fmt: skip
             if adhesive:
                 attract(choice, m, hdt, selected, c, material, table, grains, candidates, batch)
+            if walled:
+                take_shares(face_lanes, batch)
             if optional:
                 spring_r += optional_physics(
                     choice, m, n, t, hdt, selected, c, material, table, grains, candidates, batch, ended,
@@ -200,15 +215,20 @@ def make_block_forces(kind: ForcesKind) -> Any:
             account[TERMS[row]] += total
         if last:
             if hertz:
-                stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_hertz(
-                    b, c, ids, material, table, candidates
-                )
+                if walled:
+                    found = spring_energy_hertz(b, n_solid, c, ids, material, table, candidates, met)
+                else:
+                    found = spring_energy_hertz(b, n_solid, c, ids, material, table, candidates, None)
             elif not exact:
-                stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
+                if walled:
+                    found = spring_energy(b, n_solid, c, candidates, met)
+                else:
+                    found = spring_energy(b, n_solid, c, candidates, None)
+            elif walled:
+                found = spring_energy_of_maps(b, n_solid, candidates, met)
             else:
-                stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_of_maps(
-                    b, candidates
-                )
+                found = spring_energy_of_maps(b, n_solid, candidates, None)
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = found
             if adhesive:
                 stats[S.SPRING_N] -= energy_of_attraction(b, choice, c, material, table, grains, candidates)
             stats[S.SPRING_R] = spring_r

@@ -33,16 +33,13 @@ def set_separation(
 
 @inner(fastmath=FAST, forceinline=True)
 def set_separation_of_any(
-    l: int, k: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals: Any, met: Any, slot: Any,
-    separation: Any,
+    l: int, k: int, i: int, j: int, n_solid: int, x: Any, met: Any, slot: Any, separation: Any
 ) -> None:  # fmt: skip
-    """As `set_separation`, where partner j of candidate k may be a face: then it has been found already."""
+    """As `set_separation` in scenes with faces, where those and the planes have been found already."""
     if j < n_solid:  # the usual one first
         difference4(separation, 4 * l, x, 4 * j, 4 * i)
-    elif j >= n_solid + len(points):
-        copy4(separation, 4 * l, met, N_MET * slot[k])
     else:
-        set_separation(l, i, j, n_solid, x, points, normals, separation)
+        copy4(separation, 4 * l, met, N_MET * slot[k])
 
 
 @inner(fastmath=FAST, forceinline=True)

@@ -300,7 +300,9 @@ class CpuEngine:
                 )
             elif stop:
                 return Flags(
-                    fault_of(self._accounts.stats, self._parameters, layout.scene.contact, self._step - 1)
+                    fault_of(
+                        self._accounts.stats, self._parameters, layout.scene, self._grains, self._step - 1
+                    )
                 )
         return Flags()
 

@@ -14,6 +14,7 @@ from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_events import make_begin_and_end
 from ryusa.engine.cpu.contact_rows import springs_of_row
+from ryusa.engine.cpu.wall_contacts import share_of
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import (
@@ -195,8 +196,8 @@ def keep_states(m: int, selected: Any, touching: Any, batch: Any) -> None:
 
 
 @inner(fastmath=FAST)
-def spring_energy_of_maps(b: int, candidates: Any) -> tuple[float, float, int]:
-    """Energy in the normal and tangential springs of block b [J], and its contacts."""
+def spring_energy_of_maps(b: int, n_solid: int, candidates: Any, met: Any) -> tuple[float, float, int]:
+    """Energy in normal and tangential springs of block b [J], and its contacts; `met` may be None."""
     eta, rows = candidates.eta, candidates.rows
     normal = tangential = 0.0
     count = 0
@@ -205,9 +206,12 @@ def spring_energy_of_maps(b: int, candidates: Any) -> tuple[float, float, int]:
         if state == 0:
             continue
         e_n, s_x, s_y, s_z = springs_of_row(k, rows)
-        normal += 0.5 * e_n * e_n / eta[k, M.K_N]
+        half = 0.5
+        if met is not None:
+            half *= share_of(k, n_solid, candidates, met)
+        normal += half * e_n * e_n / eta[k, M.K_N]
         if eta[k, M.K_S] > 0.0 and state in (HELD, BEGAN):
             for force in (s_x, s_y, s_z):
-                tangential += 0.5 * force**2 / eta[k, M.K_S]
+                tangential += half * force**2 / eta[k, M.K_S]
         count += int(state in (HELD, BEGAN))
     return normal, tangential, count

@@ -25,9 +25,10 @@ DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
 POINT = 7  # nearest point, in the frame of the wall [m]
 AWAY = 10  # unit normal from the face to the grain, in the world [-]
 DISTANCE = 13  # from the centre of the grain [m]
-BY = 14  # the face of the list whose contact takes the place of this one, or -1
-SLOT = 15  # number of the wall
-N_MET = 16  # two cache lines
+BY = 14  # row of the contact that takes the place of this one, or minus the share of its force that it has
+SLOT = 15  # number of the wall, and a half where the nearest point lies within the face; -1: a plane
+OVERLAP, FORCE = 16, 17  # while contacts share their forces [m]
+N_MET = 24  # three cache lines
 
 
 class FaceArrays(NamedTuple):
@@ -175,15 +176,16 @@ def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: An
 @inner(fastmath=FAST, forceinline=True)
 def nearest_of_face(
     f: int, x: float, y: float, z: float, rows: Any
-) -> tuple[float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float]:
     """Nearest point of face f [m], unit normal from there to the point given, and their distance [m].
 
-    Over the face the normal is that of the face to the last bit, and the distance as to a plane.
+    Over the face the normal is that of the face to the last bit, and the distance as to a plane. The last
+    number is 1 where the nearest point lies within the face, 0 on an edge or a corner.
     """
     d_x, d_y, d_z = x - rows[f, A], y - rows[f, A + 1], z - rows[f, A + 2]
     n_x, n_y, n_z = rows[f, NORMAL], rows[f, NORMAL + 1], rows[f, NORMAL + 2]
     along = d_x * n_x + d_y * n_y + d_z * n_z
-    inside, kind = 0.0, rows[f, KIND]
+    inside, kind, within = 0.0, rows[f, KIND], 0.0
     s_11, s_12 = rows[f, S_11], rows[f, S_12]
     p_x, p_y, p_z = rows[f, EDGE_1], rows[f, EDGE_1 + 1], rows[f, EDGE_1 + 2]
     q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
@@ -204,16 +206,17 @@ def nearest_of_face(
             if away == 0.0:  # on the axis every direction is as good
                 a_x, a_y, a_z, away = q_x, q_y, q_z, 1.0
             h, share = nearest_on_cylinder(along, away, s_11, s_12)
+            within = 1.0 if 0.0 < h < s_12 else 0.0
         m_x, m_y, m_z = h * n_x + share * a_x, h * n_y + share * a_y, h * n_z + share * a_z
     c_x, c_y, c_z = rows[f, A] + m_x, rows[f, A + 1] + m_y, rows[f, A + 2] + m_z
     if inside != 0.0:
         side = -1.0 if along < 0.0 else 1.0
-        return c_x, c_y, c_z, side * n_x, side * n_y, side * n_z, side * along
+        return c_x, c_y, c_z, side * n_x, side * n_y, side * n_z, side * along, 1.0
     d_x, d_y, d_z = d_x - m_x, d_y - m_y, d_z - m_z
     distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
     if distance > 0.0:
         n_x, n_y, n_z = d_x / distance, d_y / distance, d_z / distance
-    return c_x, c_y, c_z, n_x, n_y, n_z, distance
+    return c_x, c_y, c_z, n_x, n_y, n_z, distance, within
 
 
 @inner(fastmath=FAST, forceinline=False)

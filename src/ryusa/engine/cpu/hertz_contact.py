@@ -12,6 +12,7 @@ from typing import Any
 from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import SHORT
+from ryusa.engine.cpu.wall_contacts import share_of
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
@@ -167,9 +168,9 @@ def make_compute_hertz(plane: bool, mixed: bool) -> Any:
 
 @inner(fastmath=FAST)
 def spring_energy_hertz(
-    b: int, c: Any, ids: Any, material: Any, table: Any, candidates: Any
+    b: int, n_solid: int, c: Any, ids: Any, material: Any, table: Any, candidates: Any, met: Any
 ) -> tuple[float, float, int]:
-    """Energy in the normal and tangential springs of block b [J], and its contacts."""
+    """Energy in normal and tangential springs of block b [J], and its contacts; `met` may be None."""
     eta, rows, mindlin = candidates.eta, candidates.rows, c[P.MINDLIN]
     short = rows.shape[1] == len(SHORT)
     normal = tangential = 0.0
@@ -178,7 +179,10 @@ def spring_energy_hertz(
         if candidates.touching[k]:
             overlap = rows[k, 2] if short else rows[k, M.OVERLAP]  # SHORT.index(M.OVERLAP)
             stiff = eta[k, M.K_HERTZ]
-            normal += hertz_energy(overlap, stiff)
+            share = 1.0
+            if met is not None:
+                share = share_of(k, n_solid, candidates, met)
+            normal += share * hertz_energy(overlap, stiff)
             if table is not None:
                 i, j = candidates.i[k], candidates.j[k]
                 mindlin = table[material_of(i, ids, material), material_of(j, ids, material), P.MINDLIN]
@@ -187,6 +191,6 @@ def spring_energy_hertz(
                 square = rows[k, 0] ** 2
                 if not short:
                     square += rows[k, M.SPRING_S + 1] ** 2 + rows[k, M.SPRING_S + 2] ** 2
-                tangential += 0.5 * square / k_s
+                tangential += share * 0.5 * square / k_s
             count += 1
     return normal, tangential, count

@@ -56,9 +56,7 @@ def make_filter_pairs(walled: bool) -> Any:
             if not walled:
                 set_separation(l, i_of[k], j_of[k], n_solid, x, points, normals, separation)
             else:
-                set_separation_of_any(
-                    l, k, i_of[k], j_of[k], n_solid, x, points, normals, met, slot, separation
-                )
+                set_separation_of_any(l, k, i_of[k], j_of[k], n_solid, x, met, slot, separation)
         mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
         for l in range(m):  # no branch: which pairs touch is not predictable
             selected[waiting] = first + l
@@ -102,9 +100,7 @@ def make_gather(springs: int, short: bool, walled: bool) -> Any:
             if not walled:
                 set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
             else:
-                set_separation_of_any(
-                    B.SEPARATION // 4 + l, k, i, j, n_solid, x, points, normals, met, slot, batch
-                )
+                set_separation_of_any(B.SEPARATION // 4 + l, k, i, j, n_solid, x, met, slot, batch)
             e = dashpot_row(k, eta)
             write4(
                 batch,
@@ -115,7 +111,7 @@ def make_gather(springs: int, short: bool, walled: bool) -> Any:
             copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
             if j >= n_solid:
                 batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
-                if walled and j >= n_solid + len(points):
+                if walled:
                     face_lanes[n_face] = l
                     n_face += 1
             row_to_lane(l, k, rows, batch)

@@ -113,7 +113,7 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
 @cache
 def make_optional_physics(kind: ForcesKind) -> Any:
     """Build optional_physics for what the scene has."""
-    rolling, events, film = bool(kind.rolling), bool(kind.events), bool(kind.film)
+    rolling, events, film, walled = (bool(one) for one in (kind.rolling, kind.events, kind.film, kind.walls))
     record_of_lane: Any = make_record_of_lane(bool(kind.plane_case), bool(kind.exact)) if events else None
 
     @inner(fastmath=FAST)
@@ -138,6 +138,8 @@ def make_optional_physics(kind: ForcesKind) -> Any:
             spin_i = (w[i, 0], w[i, 1], w[i, 2])  # a wall turns with its mirrored grain
             spin_j = (batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2])
             f_n = batch[B.SPRING + 4 * l + 3]
+            if walled:
+                f_n *= batch[B.SHARE + l]
             if rolling:
                 if table is not None:
                     of = table[material_of(i, grains.ids, material), material_of(j, grains.ids, material)]

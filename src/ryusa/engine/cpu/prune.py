@@ -92,7 +92,7 @@ def make_prune(walled: bool) -> Any:
         candidates.count[b] = new
         _link_partners(b, lo, hi, n, pairs, candidates)
         if walled:
-            list_faces(b, n_solid + len(points), candidates)
+            list_faces(b, n_solid, candidates)
         for k in range(first, first + new):
             touching[k] = 0
         k = first
@@ -154,16 +154,16 @@ def set_face(
 
 
 @inner(forceinline=False)
-def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
-    """List the candidates of block b that are faces."""
+def list_faces(b: int, n_solid: int, candidates: CandidateArrays) -> None:
+    """List the candidates of block b that are planes or faces."""
     first, count = candidates.first[b], 0
     for k in range(first, first + candidates.count[b]):
-        if candidates.j[k] >= first_face:
+        if candidates.j[k] >= n_solid:
             s = first + count
             candidates.face[s], candidates.slot[k] = k, count
             candidates.face_grain[s], candidates.face_number[s] = (
                 candidates.i[k],
-                candidates.j[k] - first_face,
+                candidates.j[k] - n_solid,
             )
             count += 1
     candidates.face_count[b] = count

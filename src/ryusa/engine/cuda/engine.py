@@ -264,8 +264,15 @@ class CudaEngine:
             elif stop == STOP_UNSAFE:
                 return Flags(self._unsafe_grain())
             elif stop not in (STOP_DONE, STOP_LIST):
+                assert self._scene is not None
                 return Flags(
-                    fault_of(self._d_stats.copy_to_host(), self._parameters, self._contact, self._step - 1)
+                    fault_of(
+                        self._d_stats.copy_to_host(),
+                        self._parameters,
+                        self._scene,
+                        self._grains_by_id(),
+                        self._step - 1,
+                    )
                 )
         return Flags()
 

@@ -5,6 +5,7 @@ FAULT_NONE = 0
 FAULT_NOT_A_NUMBER = 1
 FAULT_OVERLAP = 2
 FAULT_EVENTS_FULL = 3
+FAULT_CROSSED = 4  # a grain went through a face
 # Why a kernel call came back.
 STOP_DONE = 0
 STOP_LIST = 1  # the Verlet list has to be rebuilt
