@@ -195,7 +195,7 @@ MEASURES = (
                  "stress of contacts and motion over height, mu and I; needs record.forces",
                  (*WINDOW, "layer"), settled=True,
                  numbers=(("bed_normal", "Pa"), ("bed_shear", "Pa")),
-                 needs=("period", "forces", "no walls")),
+                 needs=("area", "forces")),
     MeasureEntry("walls", "ryusa.measure.walls:walls",
                  "force and torque on each wall, its contacts, its power, the way of a servo", WINDOW,
                  settled=True, builders=EVERY_BUILDER, fed=True, clumps=True,

@@ -30,7 +30,7 @@ class NearPairs:
     ----------
     t : times of the frames [s], shape (n_frame,).
     resolution : largest gap over the mean of both diameters, at a plane over that of the grain [-].
-    n_id : number of ids: free grains, fixed grains and planes.
+    n_id : number of ids: free grains, fixed grains, planes and faces, of which the first stands for its wall.
     step : time step [s]; a frame comes with the first step after its time, so at most this late.
     frame, pair : index of the frame, and i n_id + j of the pair with ids i, j; one entry per frame and pair.
     contacts : contacts that began meanwhile, dtype model.EVENT; None where the run did not record all.
@@ -193,12 +193,18 @@ def near_pairs(run: Run, begin: float | None, end: float, resolution: float) -> 
         raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
     scene = run.scene
     n_id = scene.n_partner
+    first_face = np.zeros(0, np.int64)
+    if scene.walls is not None:
+        first_face = n_id - scene.n_face + np.searchsorted(scene.walls.wall, np.arange(scene.walls.n_wall))
     counts, pairs = np.zeros(last - first, dtype=np.int64), [np.zeros(0, dtype=np.int64)]
     for k in range(first, last):
         x = np.asarray(run.frames.x[k], dtype=np.float64)
-        i, j = touching_pairs(x, scene_at(run, float(t[k])), resolution)
-        pairs.append(i * n_id + j)
-        counts[k - first] = len(i)
+        i, j = touching_pairs(x, scene_at(run, float(t[k])), float(t[k]), resolution)
+        if scene.walls is not None:  # a grain that goes from face to face stays at its wall: its first face
+            face = j >= n_id - scene.n_face
+            j[face] = first_face[scene.walls.wall[j[face] - n_id + scene.n_face]]
+        pairs.append(np.unique(i * n_id + j))
+        counts[k - first] = len(pairs[-1])
     contacts = None
     if scene.events == EventRule.ALL:
         began = run.contacts["t_begin"]

@@ -12,6 +12,7 @@ from ryusa.measure.snapshot import Snapshot, frame_at, inside_periods, lanes_of,
 from ryusa.model import Scene
 from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Bools
+from ryusa.model.wall_contacts import away_from_surfaces, shares_of_contacts
 from ryusa.results.touching import touching_pairs
 
 AT_LIMIT = 1.0e-6  # relative round-off of a tangential force that was shortened to tau_c
@@ -26,9 +27,10 @@ class ContactNetwork:
     Attributes
     ----------
     seen : the grains of the lane, or of the slice together with their partners beyond it.
-    i, j : ids, shape (n_contact,); i is a free grain, j a free grain, a fixed grain or a plane.
+    i, j : ids, shape (n_contact,); i is a free grain, j a free grain, a fixed grain, a plane or a
+        face of a wall.
     begin, end : centre of i inside the period, and the nearest centre of j or the point of touch with a
-        plane [m], shape (n_contact, 3).
+        plane or wall [m], shape (n_contact, 3).
     f_n : normal force [N], positive pushes apart, shape (n_contact,).
     f_s : size of the tangential force [N]; nan where forces were not recorded.
     sliding : whether f_s has reached the shear strength tau_c; False where forces were not recorded.
@@ -82,7 +84,7 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     A contact is that of the step before the frame, at x - v dt, where forces were recorded. It slides where
     f_s has reached tau_c = max(c + mu p, 0) of Eq. (4), where p is the force of the spring or, with
     `contact.cap = "total"`, f_n, both without adhesion. In 3D a contact belongs to the slice that holds its
-    point of touch. Contacts with [[walls]] are left out.
+    point of touch. In a hollow of walls contacts share their force (design/0019).
     """
     k = frame_at(run, t)
     scene = scene_at(run, float(run.frames.t[k]))
@@ -90,18 +92,21 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     if scene.forces:
         x = inside_periods(x - np.asarray(run.frames.v[k], dtype=np.float64) * scene.dt, scene)
         held: np.ndarray = run.contact_forces(k)  # type: ignore[attr-defined]
-        held = held[held["j"] < scene.n_partner - scene.n_face]
-        i, j = held["i"], held["j"]
-        gap, normal, overlap = _geometry(x, i, j, scene)
-        spring = pair_springs(scene, i, j, overlap)[0] * overlap
+        i, j, before = held["i"], held["j"], float(run.frames.t[k]) - scene.dt
+        gap, normal, overlap = _geometry(x, i, j, scene, before)
+        spring = shares_of_contacts(scene, x, before, i, j) * pair_springs(scene, i, j, overlap)[0] * overlap
         pull = pair_attractions(scene, i, j, overlap)[0]
         force = np.asarray(held["force"], dtype=np.float64)
         f_n, f_s, sliding = _parts(force, normal, spring, pull, i, j, scene)
     else:
         x = inside_periods(x, scene)
-        i, j = touching_pairs(x, scene)
-        gap, normal, overlap = _geometry(x, i, j, scene)
-        f_n, f_s = pair_springs(scene, i, j, overlap)[0] * overlap, np.full(len(i), np.nan)
+        now = float(run.frames.t[k])
+        i, j = touching_pairs(x, scene, now)
+        gap, normal, overlap = _geometry(x, i, j, scene, now)
+        f_n, f_s = (
+            shares_of_contacts(scene, x, now, i, j) * pair_springs(scene, i, j, overlap)[0] * overlap,
+            np.full(len(i), np.nan),
+        )
         f_n -= pair_attractions(scene, i, j, overlap)[0]
         sliding = np.zeros(len(i), dtype=np.bool_)
     chosen, slices, slice_y = 0, 1, None
@@ -139,8 +144,8 @@ def _parts(
     return f_n, f_s, (spring > 0.0) & (f_s >= (1.0 - AT_LIMIT) * tau_c)
 
 
-def _geometry(x: Floats, i: Ints, j: Ints, scene: Scene) -> tuple[Floats, Floats, Floats]:
-    """Vectors to the nearest centre of j or to the plane [m], unit normals from i to j, overlaps [m]."""
+def _geometry(x: Floats, i: Ints, j: Ints, scene: Scene, t: float) -> tuple[Floats, Floats, Floats]:
+    """Vectors to the nearest centre or point of j [m], unit normals from i to j, overlaps [m]."""
     n = scene.n_grain + scene.n_fixed
     every, plane = np.concatenate([x, scene.x_fixed.reshape(-1, 3)]), j >= n
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed])
@@ -154,9 +159,9 @@ def _geometry(x: Floats, i: Ints, j: Ints, scene: Scene) -> tuple[Floats, Floats
     distance = np.linalg.norm(gap, axis=1)
     normal[~plane] = gap[~plane] / distance[~plane, None]
     reach[~plane] += r[j[~plane]]
-    inward, point = scene.plane_normal[j[plane] - n], scene.plane_point[j[plane] - n]
-    distance[plane] = ((x[i[plane]] - point) * inward).sum(axis=1)
-    gap[plane], normal[plane] = -inward * distance[plane, None], -inward
+    away, overlap = away_from_surfaces(scene, x, t, i[plane], j[plane])
+    distance[plane], normal[plane] = reach[plane] - overlap, -away
+    gap[plane] = -away * distance[plane, None]
     return gap, normal, reach - distance
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, crest_of
 from ryusa.measure.profiles import Layers, _mean, _quotient
 from ryusa.measure.snapshot import scene_at
@@ -14,9 +13,11 @@ from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
+from ryusa.model.wall_contacts import away_from_surfaces
 
 AXES = ((0, 0), (1, 1), (2, 2), (0, 2), (2, 0))  # components xx, yy, zz, xz, zx
 XX, YY, ZZ, XZ = range(4)
+FABRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 REACH = 4.0  # lengths of coarse graining beyond the outermost grains
 FLAT = 1.0e-6  # branch vectors flatter than this, in lengths of coarse graining, count as level
 BLOCK = 2_000  # contacts or grains taken at once
@@ -43,7 +44,8 @@ class ContactStress(Averaged):
     weight, weight_along : weight of the grains above less what fixed grains and planes above carry, normal to
         the bed and along it [Pa], shape (n_layer,); in a steady dry flow equal to zz and -xz.
     deviation, deviation_along : largest difference from these over the whole weight [-]; nan under water.
-    averages : force of fixed grains and planes on the grains, per area, normal to the bed and along it.
+    averages : force of fixed grains, planes and walls on the grains, per area, normal to the bed and along
+        it; fabric of the contacts of free grains.
     """
 
     z: Floats
@@ -99,7 +101,7 @@ def contact_stress(
 
     Parameters
     ----------
-    run : a run folder, periodic along x, whose case has record.forces = true.
+    run : a run folder, periodic along x or in space, whose case has record.forces = true.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer : length of the coarse graining in mean diameters: standard deviation of its Gaussian and distance
         of the heights.
@@ -116,15 +118,18 @@ def contact_stress(
     height over the window (Goldhirsch 2010, Granular Matter 12, 239; at the bed Weinhart et al. 2012,
     Granular Matter 14, 289). Summed over all heights the first part is the Love-Weber stress. The stress on a
     plane normal to z is exactly the weight above, less the forces of fixed grains and planes above, where the
-    flow is steady and dry. Forces are those of the step before the frame.
+    flow is steady and dry. Forces are those of the step before the frame. In space and open along x, as
+    between walls, the area is that of the grains seen from above: the hull of their centres, wider by the
+    mean radius. The fabric tensor is the mean of n_a n_b over the contacts of free grains with each other
+    (Satake 1982): its trace is 1.
     """
-    t, first, last, scene, area = window_of(run, begin, end, least=1)
-    if scene.n_face:
-        raise ResultsError("not measured in a run with [[walls]]; the measure 'walls' has their forces")
+    open_ = not math.isfinite(run.scene.period[0]) and not run.scene.plane_case
+    t, first, last, scene, area = window_of(run, begin, end, least=1, plan=_plan if open_ else None)
     length = layer * float(scene.d.mean())
     z = _heights(run, first, last, scene, length)
     frames = [_frame(run, k, z, length) for k in range(first, last)]
-    contact, moved, weights, bed = (np.array(one) / area for one in zip(*frames, strict=True))
+    *sums, fabric = (np.array(one) for one in zip(*frames, strict=True))
+    contact, moved, weights, bed = (one / area for one in sums)
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
     pressure = whole[:, (XX, ZZ) if scene.plane_case else (XX, YY, ZZ)].mean(axis=1)
@@ -161,6 +166,10 @@ def contact_stress(
             (
                 average("bed_normal", "Pa", [bed[:, 2]], window),
                 average("bed_shear", "Pa", [-bed[:, 0]], window),
+                *(
+                    average(f"fabric_{name}", "-", [fabric[np.isfinite(fabric[:, c]), c]], window)
+                    for c, name in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))
+                ),
             ),
             (
                 *_balance(scene, area, off, off_along),
@@ -168,6 +177,20 @@ def contact_stress(
             ),
         ),
     )
+
+
+def _plan(run: Run, first: int, last: int, scene: Scene) -> float:
+    """Area of the grains seen from above, mean of a window [m2]: the hull of centres and a radius more."""
+    from scipy.spatial import ConvexHull
+
+    r, found = 0.5 * float(scene.d.mean()), list[float]()
+    for k in range(first, last):
+        x = np.asarray(run.frames.x[k], dtype=np.float64)[:, :2]
+        hull = ConvexHull(x[np.isfinite(x[:, 0])])
+        found.append(
+            float(hull.volume + hull.area * r + math.pi * r * r)
+        )  # in a plane these are area and rim
+    return float(np.mean(found))
 
 
 def _heights(run: Run, first: int, last: int, scene: Scene, length: float) -> Floats:
@@ -206,7 +229,7 @@ def _balance(scene: Scene, area: float, off: float, off_along: float) -> tuple[s
     )
 
 
-def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, Floats, Floats]:
+def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Sums of one frame over heights z of the scene [m], times the area.
 
     Returns
@@ -214,7 +237,8 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
     contact : stress of the contacts [N], (5, n_layer).
     moved : G times mass, momentum and its flux, (9, n_layer) [kg/m], [kg/s], [N].
     weights : along the bed and normal to it, less what fixed grains and planes carry above, (2, n_layer) [N].
-    bed : force of fixed grains and planes on the grains [N], (3,).
+    bed : force of fixed grains, planes and walls on the grains [N], (3,).
+    fabric : mean of n_a n_b of the contacts of free grains, xx, yy, zz, xy, xz, yz [-], (6,).
     """
     from scipy.special import ndtr
 
@@ -223,7 +247,8 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
     v = np.asarray(run.frames.v[k], dtype=np.float64)
     forces: np.ndarray = run.contact_forces(k)  # type: ignore[attr-defined]
     f = np.asarray(forces["force"], dtype=np.float64)
-    branch, tip, bound = _branches(x, forces["i"], forces["j"], scene)
+    before = float(run.frames.t[k]) - scene.dt
+    branch, tip, bound = _branches(x, forces["i"], forces["j"], scene, before)
     contact, moved, weights = np.zeros((5, len(z))), np.zeros((9, len(z))), np.zeros((2, len(z)))
     for a in range(0, len(f), BLOCK):
         one = slice(a, a + BLOCK)
@@ -242,7 +267,9 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
         moved += np.stack([m, *(m * v[one].T), *(m * np.stack(flux))]) @ kernel
         share = m @ ndtr(off)
         weights += np.array([scene.gravity[0] * share, -scene.gravity[2] * share])
-    return contact, moved, weights, f[bound].sum(axis=0)
+    n = branch[~bound] / np.linalg.norm(branch[~bound], axis=1)[:, None]
+    every = [(n[:, a] * n[:, b]).mean() if len(n) else math.nan for a, b in FABRIC]
+    return contact, moved, weights, f[bound].sum(axis=0), np.array(every)
 
 
 def _line(z: Floats, top: Floats, rise: Floats, length: float) -> Floats:
@@ -257,10 +284,13 @@ def _line(z: Floats, top: Floats, rise: Floats, length: float) -> Floats:
     return np.where(flat[:, None], even, sloped)
 
 
-def _branches(x: Floats, i: np.ndarray, j: np.ndarray, scene: Scene) -> tuple[Floats, Floats, Bools]:
+def _branches(
+    x: Floats, i: np.ndarray, j: np.ndarray, scene: Scene, t: float
+) -> tuple[Floats, Floats, Bools]:
     """Branch vectors that end at the centre of i [m], where they begin, and whether j is fixed.
 
-    They begin at the centre of a free partner, and at the point of contact with a fixed grain or plane.
+    They begin at the centre of a free partner, and at the point of contact with a fixed grain, plane
+    or wall.
     """
     n, n_fixed = scene.n_grain, scene.n_fixed
     branch = np.zeros((len(i), 3))
@@ -270,8 +300,8 @@ def _branches(x: Floats, i: np.ndarray, j: np.ndarray, scene: Scene) -> tuple[Fl
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):
             branch[~plane, axis] -= period * np.round(branch[~plane, axis] / period)
-    normal, point = scene.plane_normal[j[plane] - n - n_fixed], scene.plane_point[j[plane] - n - n_fixed]
-    branch[plane] = normal * ((x[i[plane]] - point) * normal).sum(axis=1)[:, None]
+    away, overlap = away_from_surfaces(scene, x, t, i[plane], j[plane])
+    branch[plane] = away * (0.5 * scene.d[i[plane]] - overlap)[:, None]
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed])
     fixed = bound & ~plane
     distance = np.linalg.norm(branch[bound], axis=1)

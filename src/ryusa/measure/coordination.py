@@ -81,10 +81,10 @@ def coordination(
 
     Notes
     -----
-    Grains touch where they overlap, by the positions of the frame; contacts with fixed grains and planes
-    count, each once for the free grain. Rattlers are grains with fewer than 2 contacts in a plane scene and
-    fewer than 4 in 3D, counted once: those that become such when rattlers are taken away stay. Without them
-    the mean is that of all contacts of the other grains (z* of Agnolin and Roux 2007, Phys. Rev. E 76,
+    Grains touch where they overlap, by the positions of the frame; contacts with fixed grains, planes and
+    walls count, each once for the free grain. Rattlers are grains with fewer than 2 contacts in a plane scene
+    and fewer than 4 in 3D, counted once: those that become such when rattlers are taken away stay. Without
+    them the mean is that of all contacts of the other grains (z* of Agnolin and Roux 2007, Phys. Rev. E 76,
     061302, who tell rattlers by the forces). The number depends on the stiffness: softer grains touch more.
     """
     t, first, last, scene, since = _frames(run, begin, end)
@@ -94,7 +94,9 @@ def coordination(
     levels: list[Floats] = []
     for k in range(first, last):
         x = np.asarray(run.frames.x[k], dtype=np.float64)
-        counts.append(contacts_per_grain(x, scene_at(run, float(t[k - first]))).astype(np.float64))
+        counts.append(
+            contacts_per_grain(x, scene_at(run, float(t[k - first])), float(t[k - first])).astype(np.float64)
+        )
         levels.append(np.floor(x[:, 2] / thickness))
     low = min(int(one.min()) for one in levels)
     n_layer = max(int(one.max()) for one in levels) - low + 1

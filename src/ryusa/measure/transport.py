@@ -1,7 +1,7 @@
 """Sediment transport: its rate, the layer that carries it, and the kinetic stress of the grains."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -250,8 +250,14 @@ def kinetic_stress(
     )
 
 
-def window_of(run: Run, begin: float | None, end: float, least: int) -> tuple[Floats, int, int, Scene, float]:
-    """Times of the frames in a window [s], the first and one beyond the last, the scene, the area [m2]."""
+def window_of(
+    run: Run, begin: float | None, end: float, least: int,
+    plan: Callable[[Run, int, int, Scene], float] | None = None,
+) -> tuple[Floats, int, int, Scene, float]:  # fmt: skip
+    """Times of the frames in a window [s], the first and one beyond the last, the scene, the area [m2].
+
+    `plan` finds the area where the scene is open along x.
+    """
     since = settle_time(run) if begin is None else begin
     t = np.asarray(run.frames.t, dtype=np.float64)
     first, last = int(np.searchsorted(t, since, "left")), int(np.searchsorted(t, end, "right"))
@@ -259,6 +265,8 @@ def window_of(run: Run, begin: float | None, end: float, least: int) -> tuple[Fl
     if last - first < least or scene.n_grain == 0:
         few = f"{max(last - first, 0)} frames" if scene.n_grain else "no free grains"
         raise ResultsError(f"{few} from t = {since:g} s to {end:g} s; {least} frames or more are needed")
+    if plan is not None:
+        return t[first:last], first, last, scene, plan(run, first, last, scene)
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     if not math.isfinite(scene.period[0]):
         raise ResultsError("the scene is open along x: it has no area of bed to divide by")

@@ -9,26 +9,27 @@ from numpy.typing import NDArray
 
 from ryusa.model import Scene
 from ryusa.model.near_pairs import Pairs, near_free_pairs, near_pairs
+from ryusa.model.wall_contacts import touched_surfaces
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Ints]:
+def touching_pairs(x: Floats, scene: Scene, t: float = 0.0, gap: float = 0.0) -> tuple[Ints, Ints]:
     """Ids i, j of the pairs that overlap, shape (n_pair,) each, every pair once.
 
     Parameters
     ----------
     x : centres of the free grains [m], shape (n_grain, 3).
-    scene : the scene that holds then.
-    gap : pairs that are nearer than this count too, over the mean of both diameters; at a plane over that of
-        the grain [-].
+    scene, t : the scene that holds then; time [s], which tells where moving walls are.
+    gap : pairs that are nearer than this count too, over the mean of both diameters; at a plane or wall over
+        that of the grain [-].
 
     Returns
     -------
-    i, j : i is a free grain; j is a free grain, a fixed grain or a plane, with the ids of the scene.
+    i, j : i is a free grain; j is a free grain, a fixed grain, a plane or a face, with the ids of the scene.
     """
-    return _touching(x, scene, partial(_near, gap=gap), gap)
+    return _touching(x, scene, t, partial(_near, gap=gap), gap)
 
 
 def _near(x: Floats, d: Floats, box: Floats, free: int, gap: float) -> Pairs:
@@ -37,7 +38,11 @@ def _near(x: Floats, d: Floats, box: Floats, free: int, gap: float) -> Pairs:
 
 
 def _touching(
-    x: Floats, scene: Scene, near_of: Callable[[Floats, Floats, Floats, int], Pairs], gap: float = 0.0
+    x: Floats,
+    scene: Scene,
+    t: float,
+    near_of: Callable[[Floats, Floats, Floats, int], Pairs],
+    gap: float = 0.0,
 ) -> tuple[Ints, Ints]:
     """As `touching_pairs`; `near_of` gives pairs that may be near, one of them free, and i < j."""
     n, there = scene.n_grain, np.flatnonzero(scene.fixed_active)
@@ -58,20 +63,18 @@ def _touching(
     way -= np.where(box > 0.0, box * np.round(way / np.where(box > 0.0, box, 1.0)), 0.0)
     near = (way**2).sum(axis=1) < (0.5 * (1.0 + gap) * (d[i] + d[j])) ** 2
     firsts, partners = [ids[i[near]]], [ids[j[near]]]
-    for k in np.flatnonzero(scene.plane_active):
-        at = np.flatnonzero((x - scene.plane_point[k]) @ scene.plane_normal[k] < (0.5 + gap) * scene.d)
-        firsts.append(at)
-        partners.append(np.full(len(at), n + scene.n_fixed + k))
+    for found, partner in zip(touched_surfaces(x, scene, t, gap), (firsts, partners), strict=True):
+        partner.append(found)
     return np.concatenate(firsts).astype(np.int64), np.concatenate(partners).astype(np.int64)
 
 
-def contacts_per_grain(x: Floats, scene: Scene) -> Ints:
-    """Number of grains, fixed grains and planes that each free grain overlaps, shape (n_grain,).
+def contacts_per_grain(x: Floats, scene: Scene, t: float = 0.0) -> Ints:
+    """Number of grains, fixed grains, planes and walls that each free grain overlaps, shape (n_grain,).
 
     Parameters
     ----------
-    x, scene : as in `touching_pairs`.
+    x, scene, t : as in `touching_pairs`.
     """
-    i, j = _touching(x, scene, near_free_pairs)
+    i, j = _touching(x, scene, t, near_free_pairs)
     n = scene.n_grain
     return np.bincount(i, minlength=n) + np.bincount(j[j < n], minlength=n)

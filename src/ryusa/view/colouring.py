@@ -60,8 +60,8 @@ def _size(results: Results, _k: int) -> Floats:
 
 
 def _contacts(results: Results, k: int) -> Floats:
-    scene = results.scene_at(float(results.frames.t[k]))
-    return contacts_per_grain(results.frames.x_wrapped[k], scene).astype(np.float64)
+    t = float(results.frames.t[k])
+    return contacts_per_grain(results.frames.x_wrapped[k], results.scene_at(t), t).astype(np.float64)
 
 
 COLOURINGS = (

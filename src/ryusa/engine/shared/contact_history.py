@@ -9,6 +9,7 @@ from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
 from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Floats
+from ryusa.model.wall_contacts import shares_of_contacts
 from ryusa.model.wall_shape import ways_to_faces
 
 
@@ -59,7 +60,8 @@ def forces_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Contac
         along = shear[:, 0]
         shear = np.stack([along * normal[:, 2], np.zeros(len(i)), -along * normal[:, 0]], axis=1)
     f_n = held.f_n[places] - pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[0]
-    return ContactForces(normal, shear - f_n[:, None] * normal)
+    share = shares_of_contacts(scene, x, state.t - scene.dt, i, j)
+    return ContactForces(normal, share[:, None] * (shear - f_n[:, None] * normal))
 
 
 def overlaps_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Floats:
@@ -80,18 +82,18 @@ def energies_of_springs(scene: Scene, state: State, places: np.ndarray) -> Sprin
     if not len(places):
         return SpringEnergies(0.0, 0.0, 0.0)
     held = state.contacts
-    overlap = held.overlap[places]
+    overlap, i, j = held.overlap[places], held.i[places], held.j[places]
+    share = shares_of_contacts(scene, state.x - state.v * scene.dt, state.t - scene.dt, i, j)
     k_n, k_s = pair_springs(scene, held.i[places], held.j[places], overlap)
     e_n = held.f_n[places] - held.dash_n[places]
     if scene.contact.force == ContactForce.HERTZ_MINDLIN:
-        normal = float(np.sum(0.4 * e_n * overlap))
+        normal = float(np.sum(share * 0.4 * e_n * overlap))
     else:
-        normal = float(np.sum(0.5 * e_n**2 / np.where(held.k_n[places] > 0.0, held.k_n[places], k_n)))
-    i, j = held.i[places], held.j[places]
+        normal = float(np.sum(share * 0.5 * e_n**2 / np.where(held.k_n[places] > 0.0, held.k_n[places], k_n)))
     normal -= float(pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[1].sum())
     tangential = 0.0
     if scene.contact.k_s > 0.0:
-        tangential = float(np.sum(0.5 * held.spring_s[places] ** 2 / k_s[:, None]))
+        tangential = float(np.sum(0.5 * share[:, None] * held.spring_s[places] ** 2 / k_s[:, None]))
     return SpringEnergies(normal, tangential, rolling_energy(scene, state, places))
 
 

@@ -34,7 +34,10 @@ NEEDS: dict[str, tuple[Callable[["Case"], bool], str]] = {
     "row": (lambda case: case.water is not None and case.water.row is not None, "[water.row]"),
     "forces": (lambda case: case.record.forces, "record.forces = true"),
     "walls": (lambda case: bool(case.walls) or stream(case), "[[walls]], or builder 'stream'"),
-    "no walls": (lambda case: not case.walls and not stream(case), "a case without walls"),
+    "area": (
+        lambda case: _along(case) or not case.motion.plane,
+        "a scene that is periodic along x, or motion.plane = false",
+    ),
     "traffic": (lambda case: bool(case.feeds or case.exits), "[[feeds]] or [[exits]]"),
     "period": (_along, "a scene that is periodic along x"),
     "open": (lambda case: not _along(case), "a scene that is open along x"),
