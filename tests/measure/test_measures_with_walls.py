@@ -70,7 +70,10 @@ LID = WALLS + _wall("plate", (-20, -20, -0.2), (60, 0, 0), (0, 60, 0))
 def boxes(tmp_path_factory):
     found, folder = {}, tmp_path_factory.mktemp("boxes")
     places = [
-        (1.3 + 2.4 * a, 1.3 + 2.4 * b, 1.2 + 2.3 * c) for c in range(5) for a in range(4) for b in range(4)
+        (1.3 + 2.4 * a + 0.25 * (7 * c % 3), 1.3 + 2.4 * b + 0.2 * (5 * c % 4), 1.2 + 2.3 * c)
+        for c in range(5)
+        for a in range(4)
+        for b in range(4)
     ]
     rows = "\n".join(
         f"{x:.2f},{y:.2f},{z:.2f},{1.9 + 0.2 * (k * 0.618 % 1):.3f}" for k, (x, y, z) in enumerate(places)

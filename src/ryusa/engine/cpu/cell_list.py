@@ -1,11 +1,12 @@
-"""A cell grid and, from it, a Verlet list of pairs.
+"""Cell grids and, from them, a Verlet list of pairs.
 
-Grains are sorted by cell, and by id within a cell, so that order and list follow from positions alone: a
-resumed run builds the same list as the run it continues.
+Grains much larger than most have grids of their own, one for each class of sizes: else one boulder would make
+the cells of all grains as wide as itself. Grains are sorted by cell, and by id within a cell, so that order
+and list follow from positions alone: a resumed run builds the same list as the run it continues.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,21 @@ from ryusa.laws.geometry import wrap
 from ryusa.model.scene import Floats
 
 Grid = tuple[np.ndarray, np.ndarray, np.ndarray]
+ROUND = 1e-9  # of a cell
+APART = 3.0  # usual diameters: larger grains have grids of their own
+
+
+class Levels(NamedTuple):
+    """Grids of grains of several classes of sizes, one after the other."""
+
+    low: Any  # lowest corner of each grid [m], (n_level, 3)
+    width: Any  # of its cells [m], (n_level, 3)
+    dims: Any  # (n_level, 3)
+    cells: Any  # place of its first cell in `first`, (n_level + 1,)
+    grains: Any  # place of its first grain in `order`, (n_level + 1,)
+    first: Any  # first slot of each cell within its grid, and one more
+    order: Any  # grains by cell, and by id within a cell
+    r_most: Any  # largest radius [m], (n_level,)
 
 
 def grid_of(low: Floats, high: Floats, n: int, size: float, period: Floats) -> Grid:
@@ -83,6 +99,69 @@ def _sort(
             order[free] = i
 
 
+def levels_of(d: Floats, usual: float) -> np.ndarray:
+    """Level of each grain by its diameter, shape (n,): 0 up to `APART` usual ones, then by factors of 2.
+
+    >>> levels_of(np.array([1.0, 3.0, 5.0, 9.0, 33.0]), 1.0).tolist()
+    [0, 0, 1, 2, 4]
+    """
+    ratio = np.maximum(np.asarray(d) / (APART * usual), 0.5)
+    return np.ceil(np.log2(ratio) - 1e-9).clip(0).astype(np.int64)
+
+
+def one_grid(grid: Grid, first: np.ndarray, order: np.ndarray, r_most: float) -> Levels:
+    """Levels of grains of one class."""
+    low, width, dims = (one[None] for one in grid)
+    return Levels(
+        low,
+        width,
+        dims,
+        np.array([0, len(first)]),
+        np.array([0, len(order)]),
+        first,
+        order,
+        np.array([r_most]),
+    )
+
+
+def grids_by_size(
+    x: Floats, d: Floats, ids: np.ndarray, reach: float, period: Floats, low: Floats, high: Floats,
+    largest: float,
+) -> Levels:  # fmt: skip
+    """Grids of grains between `low` and `high` [m], one for each class of sizes that occurs.
+
+    Parameters
+    ----------
+    x, d, ids : centres and diameters of the grains [m], and what they are sorted by within a cell.
+    reach : of the list beyond touch [m].
+    largest : diameter for which the cells are made where there is one class only [m].
+    """
+    n = len(d)
+    level = levels_of(d, float(np.median(d))) if n else np.zeros(0, np.int64)
+    kinds = [int(one) for one in np.unique(level)] or [0]
+    grids, firsts, orders, most = list[Grid](), list[np.ndarray](), list[np.ndarray](), list[float]()
+    for kind in kinds:
+        some = np.flatnonzero(level == kind) if len(kinds) > 1 else np.arange(n)
+        if len(kinds) > 1:
+            largest = float(d[some].max())
+        grid = grid_of(low, high, len(some), largest + reach, period)
+        first, order = sort_by_cell(np.ascontiguousarray(x[some]), len(some), ids[some], grid)
+        grids.append(grid)
+        firsts.append(first)
+        orders.append(some[order])
+        most.append(0.5 * largest)
+    return Levels(
+        np.array([one[0] for one in grids]),
+        np.array([one[1] for one in grids]),
+        np.array([one[2] for one in grids]),
+        np.concatenate([[0], np.cumsum([len(one) for one in firsts])]),
+        np.concatenate([[0], np.cumsum([len(one) for one in orders])]),
+        np.concatenate(firsts),
+        np.concatenate(orders),
+        np.array(most),
+    )
+
+
 @inner(forceinline=True)
 def _neighbour_cell(c: int, step: int, n: int, periodic: bool) -> int:
     # index along one axis of a cell one step from cell c, or -1; in few periodic cells each comes once
@@ -94,15 +173,15 @@ def _neighbour_cell(c: int, step: int, n: int, periodic: bool) -> int:
 
 @inner(forceinline=True)
 def _append_partners(
-    i: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any, x: Any, ids: Any,
-    period: Any, skin: float, plane_case: bool, body: Any, partners: Any, used: int,
+    i: int, offset: int, level: int, levels: Any, x: Any, ids: Any, period: Any, skin: float,
+    plane_case: bool, body: Any, partners: Any, used: int,
 ) -> int:  # fmt: skip
-    """Append to `partners` all grains of one grid with a higher id than grain i and within its reach.
+    """Append to `partners` all grains of one level with a higher id than grain i and within its reach.
 
     Parameters
     ----------
     offset : added to the numbers in the grid to get places (free grains 0, fixed grains n).
-    low, width, dims, first, order : the grid, of `grid_of` and `sort_into`.
+    levels : grids of `grids_by_size`.
     plane_case : grains at another y are in another lane and never met.
     body : number of the rigid body of each grain, by id, another for each grain of its own; two of one body
         never meet. None where there are none.
@@ -112,17 +191,26 @@ def _append_partners(
     -------
     The new count, or -1 where `partners` is too short.
     """
+    low, width, dims = levels.low[level], levels.width[level], levels.dims[level]
+    first, order = levels.first[levels.cells[level] :], levels.order[levels.grains[level] :]
     x_i, y_i, z_i, r_i, id_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3] + skin, ids[i]
     l_x, l_y, n_x, n_y, n_z = period[0], period[1], dims[0], dims[1], dims[2]
     c_x, c_y, c_z = _cell(x_i, low[0], width[0]), _cell(y_i, low[1], width[1]), _cell(z_i, low[2], width[2])
-    bottom, top = max(c_z - 1, 0), min(c_z + 1, n_z - 1)
+    far = r_i + levels.r_most[level]  # a grain larger than those of the level looks over more than one cell
+    most_x = max(math.ceil(far / width[0] - ROUND), 1)
+    most_y = max(math.ceil(far / width[1] - ROUND), 1)
+    most_z = max(math.ceil(far / width[2] - ROUND), 1)
+    bottom, top = max(c_z - most_z, 0), min(c_z + most_z, n_z - 1)
     if top < bottom:
         return used
-    for k in range(9):
-        a = _neighbour_cell(c_x, k // 3 - 1, n_x, l_x < math.inf)
-        b = _neighbour_cell(c_y, k % 3 - 1, n_y, l_y < math.inf)
-        if a < 0 or b < 0:
-            continue
+    begin_x, count_x = _cells_round(c_x, most_x, n_x, l_x < math.inf)
+    begin_y, count_y = _cells_round(c_y, most_y, n_y, l_y < math.inf)
+    for k in range(count_x * count_y):
+        a, b = begin_x + k // count_y, begin_y + k % count_y
+        if l_x < math.inf:
+            a = (a + n_x) % n_x
+        if l_y < math.inf:
+            b = (b + n_y) % n_y
         column = (a * n_y + b) * n_z
         begin, end = first[column + bottom], first[column + top + 1]  # cells of a column lie side by side
         if used + end - begin >= len(partners):
@@ -139,6 +227,15 @@ def _append_partners(
     return used
 
 
+@inner(forceinline=True)
+def _cells_round(c: int, most: int, n: int, periodic: bool) -> tuple[int, int]:
+    """First cell along one axis that is at most `most` from cell c, below 0 in a period, and how many."""
+    if periodic:
+        return (c - most, 2 * most + 1) if 2 * most + 1 <= n else (c - (n - 1) // 2, n)
+    first, last = max(c - most, 0), min(c + most, n - 1)
+    return first, max(last - first + 1, 0)
+
+
 @kernel(nogil=True)
 def build_list(
     lo: int,
@@ -149,8 +246,8 @@ def build_list(
     n_solid: int,
     walls: Any,
     active_planes: Any,
-    free_grid: Any,
-    fixed_grid: Any,
+    free_grids: Any,
+    fixed_grids: Any,
     period: Any,
     skin: float,
     plane_case: bool,
@@ -164,34 +261,24 @@ def build_list(
     Partners of grain i begin at partners[start[i]]. Free ones come first, then fixed grains, then planes,
     then faces, each in a fixed order. Returns -1 where `partners` is too short.
     """
-    low, width, dims, first, order = free_grid
-    low_b, width_b, dims_b, first_b, order_b = fixed_grid
     normals, points = walls.normals, walls.points
-    used, bed = 0, len(order_b) > 0
+    used, bed = 0, len(fixed_grids.order) > 0
     for i in range(lo, hi):
         start[i] = used
-        used = _append_partners(
-            i, 0, low, width, dims, first, order, x, ids, period, skin, plane_case, body, partners, used
-        )
-        if bed and used >= 0:
+        for level in range(len(free_grids.r_most)):
             used = _append_partners(
-                i,
-                n,
-                low_b,
-                width_b,
-                dims_b,
-                first_b,
-                order_b,
-                x,
-                ids,
-                period,
-                skin,
-                plane_case,
-                body,
-                partners,
-                used,
+                i, 0, level, free_grids, x, ids, period, skin, plane_case, body, partners, used
             )
-        if used < 0 or used + len(normals) > len(partners):
+            if used < 0:
+                return -1
+        if bed:
+            for level in range(len(fixed_grids.r_most)):
+                used = _append_partners(
+                    i, n, level, fixed_grids, x, ids, period, skin, plane_case, body, partners, used
+                )
+                if used < 0:
+                    return -1
+        if used + len(normals) > len(partners):
             return -1
         for k in range(len(normals)):
             gap = 0.0

@@ -8,7 +8,15 @@ import numpy as np
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays
 from ryusa.engine.cpu.block_exchange import number_crossing_pairs
-from ryusa.engine.cpu.cell_list import bounds_of, build_list, grid_of, sort_by_cell
+from ryusa.engine.cpu.cell_list import (
+    APART,
+    bounds_of,
+    build_list,
+    grid_of,
+    grids_by_size,
+    one_grid,
+    sort_by_cell,
+)
 from ryusa.engine.cpu.contact_rows import SHORT, has_short_rows
 from ryusa.engine.cpu.faces import N_MET, face_arrays
 from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
@@ -113,16 +121,21 @@ class BlockLayout(Layout):
         )
         low, high = (bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)) if n else bounds_of(old.x[:0, :3])
         skin = skin + film_reach(scene)
-        size = self.largest + skin
-        grid = grid_of(low, high, n, size, period)
+        # grains lie in memory by the cells of most of them, whatever the size of the largest
+        usual = float(2.0 * np.median(old.x[:n, 3])) if n else self.largest
+        grid = grid_of(low, high, n, min(self.largest, APART * usual) + skin, period)
         first, order = sort_by_cell(old.x, n, old.ids, grid)
         grains, listed, place_of = like(n, old), np.empty((n, 3)), np.empty(n, np.int64)
         share(lambda a, b: move_grains(blocks[a], blocks[b], order, old, grains, place_of, listed))
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
-        bed_grid = grid_of(*bounds_of(bed), len(bed), size, period)
-        bed_first, bed_order = sort_by_cell(bed, len(bed), self.standing, bed_grid)
-        free = (*grid, first, np.arange(n))
-        fixed = (*bed_grid, bed_first, self.standing[bed_order])
+        if self.largest <= APART * usual:
+            free = one_grid(grid, first, np.arange(n), 0.5 * self.largest)
+        else:
+            d = 2.0 * grains.x[:n, 3]
+            free = grids_by_size(grains.x[:n, :3], d, grains.ids[:n], skin, period, low, high, self.largest)
+        d = 2.0 * self.r[n + self.standing]
+        fixed = grids_by_size(bed, d, self.standing, skin, period, *bounds_of(bed), self.largest)
+        fixed = fixed._replace(order=self.standing[fixed.order])
         start = np.zeros(n + 1, np.int64)
 
         def list_some(first: int, last: int) -> tuple[int, np.ndarray]:
