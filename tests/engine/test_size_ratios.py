@@ -29,7 +29,8 @@ def mixture(largest, n_large, periodic, fixed, seed):
     more = {"x_fixed": x[stands], "d_fixed": d[stands]} if fixed else {}
     timing = ContactTiming.EXACT
     fixed_, first = scene(
-        x[~stands], d[~stands], period=period, allow_overlap=True, gravity=0.0, timing=timing, stiffness=1e-3, dt=1e-4,
+        x[~stands], d[~stands], period=period, allow_overlap=True, gravity=0.0, timing=timing,
+        stiffness=1e-3, dt=1e-4,
         **more,
     )  # fmt: skip
     return replace(fixed_, overlap_limit=1e6), first
