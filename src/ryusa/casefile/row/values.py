@@ -16,6 +16,7 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.backwater import backwater, bore_depth, level_of_basin
 from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import Discharge, RowDamSection, RowSection, row_keys
 from ryusa.formats.line import read_line
@@ -238,7 +239,7 @@ def row_plan(case: "Case") -> RowPlan:
     about, cell = segments_of(case), cell_of(case)
     bed = bed_points(case) if case.build.kind == "stream" else ((0.0, 0.0),)
     first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell, bed)
-    height = keys.height or SPARE * max(deepest(case, first), 4.0 * cell)
+    height = keys.height or SPARE * max(highest_water(case, first), 4.0 * cell)
     return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height, bed)
 
 
@@ -331,6 +332,52 @@ def deepest(case: "Case", plan: RowPlan) -> float:
     if (entering := inlet_depth(case)) is not None:
         found.append(entering + float(bed[0]))
     return max((one for one in found if one > 0.0), default=0.0)
+
+
+def highest_water(case: "Case", plan: RowPlan) -> float:
+    """Depth that the water may reach in a run [m]: `deepest`, backwater, bores, and closed basins."""
+    keys, wet, q = _row(case), case.water, peak_discharge(case)
+    found = deepest(case, plan)
+    if wet is None or keys.upstream is None or keys.downstream is None:
+        return found
+    bed, tilt, end = bed_over(case, plan.x), math.tan(slope(case)), keys.downstream
+    rigid = plan.bottom + bed
+    for dam in keys.dams:
+        first, last = dam_span(plan, dam)
+        if dam.concentration is None:
+            rigid[first:last] = np.maximum(rigid[first:last], crest_of(plan, dam))
+    up = rigid - tilt * plan.x  # over a level line
+    volume = float(np.maximum(plan.start - rigid, 0.0).sum()) * plan.dx
+    if q > 0.0:
+        below = -math.inf if end.level is None else end.level - tilt * float(plan.x[-1])
+        rough = 0.0 if column_keys(case).bed == "smooth" else wet.roughness or reference_diameter(case)
+        held = backwater(
+            up, plan.dx, q, below, critical_depth(case, q), case.motion.gravity, rough, wet.viscosity
+        )
+        found = max(found, float((rigid + held - plan.bottom).max()))
+        fast = jumping(case, q)
+        found = max([found, *(bore_depth(one.normal, one.froude) + float(bed.max()) for one in fast)])
+        volume += q * (case.stop.time or 0.0)
+    if end.end == "wall" and (keys.upstream.end == "wall" or q > 0.0):
+        level = level_of_basin(up, plan.dx, volume)
+        found = max(found, float((level + tilt * plan.x - plan.bottom).max()))
+    return found
+
+
+def jumping(case: "Case", q: float) -> list[Reach]:
+    """Reaches where a discharge [m2/s] is faster than waves and has slower water somewhere below it."""
+    keys, found = _row(case), reaches(case, q)
+    held = keys.downstream is not None and keys.downstream.end in ("wall", "level")
+    return [
+        one
+        for k, one in enumerate(found)
+        if one.froude > 1.0
+        and (
+            held
+            or any(not other.froude > 1.0 for other in found[k + 1 :])
+            or any(dam.end > one.begin for dam in keys.dams)
+        )
+    ]
 
 
 def crest_of(plan: RowPlan, dam: RowDamSection) -> float:
