@@ -156,6 +156,15 @@ def run(
         typer.Option("--resume", help="Continue this run where it was stopped; start it if there is none."),
     ] = False,
     force: Force = False,
+    shortened: Annotated[
+        str | None,
+        typer.Option(
+            "--try",
+            metavar="TIME",
+            help="Only try the case: it ends at TIME, such as '20 ms', and its timeline, feeds and settling "
+            "shrink with it. The folder is runs/CASE-try, which is replaced.",
+        ),
+    ] = None,
 ) -> None:
     """Run a case and write a run folder; Ctrl-C stops the run with a checkpoint and readable data.
 
@@ -170,7 +179,9 @@ def run(
     with catch_signals() as signal, registry.leading(engine) as leads:
         if not leads:
             return
-        found = _read(case, settings, seed)
+        found = _read(case, settings, seed, shortened)
+        if shortened is not None and out is None:
+            out, overwrite = Path("runs") / f"{case.stem}-try", True
         from ryusa.running.runner import run as run_case
 
         signal.raise_if_stopped("before the first step; no run folder was created")
@@ -284,12 +295,16 @@ def overrides_of(settings: list[str] | None) -> dict[str, str]:
     return overrides
 
 
-def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
+def _read(path: Path, settings: list[str] | None, seed: int | None, shortened: str | None = None) -> "Case":
     overrides = overrides_of(settings)
     if seed is not None:
         overrides["seed"] = str(seed)
     gc.disable()  # modules are loaded here: a collection frees nothing and takes a quarter of the time
     try:
+        if shortened is not None:
+            from ryusa.casefile.trial import read_shortened
+
+            return read_shortened(path, overrides, shortened)
         from ryusa.casefile.read import read
 
         return read(path, overrides)

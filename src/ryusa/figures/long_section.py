@@ -131,7 +131,8 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     head = max(highest, *(_head(one) * scale for one in every))
     span = min(head, highest + 0.5 * (highest - low)) - low
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
-    axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
+    wet = (surface > floor).tolist()  # a dry dam has its surface on its crest
+    axes.fill_between(x, bottom, surface, where=wet, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
         level = np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)  # not over the face of a dam

@@ -13,7 +13,7 @@ from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity
 from ryusa.casefile.row.hydrograph import hydrograph_rows
 from ryusa.casefile.row.reach_rows import reach_rows
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import RowSection, row_keys
+from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
     SPARE,
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
 # Segments of a crest, and q/(sqrt(g) H^1.5) over it in a row, of `ryusa validate river` (design/0027)
 _CRESTS = ((1, 0.561), (2, 0.513), (3, 0.497), (5, 0.484), (10, 0.476))
+WHOLE = 0.01  # of a cell: a dam that is as near to whole cells is of them
 _NEAR = 0.15  # distance of a Froude number from 1 within which a flow is undular in nature
 
 
@@ -199,6 +200,7 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         first, end = dam_span(plan, dam)
         crest = crest_of(plan, dam)
         high = crest - float(plan.bottom[first:end].min())
+        kept, flag = _in_whole_cells(case, dam, plan, crest)
         kind = "impermeable" if dam.concentration is None else f"porous, concentration {dam.concentration:g}"
         rows.append(
             number(
@@ -207,7 +209,8 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
                 high,
                 "cm",
                 f"over the bottom at its foot, x = {plan.x_low + first * plan.dx:g} to "
-                f"{plan.x_low + end * plan.dx:g} m; {kind}, {end - first} segments",
+                f"{plan.x_low + end * plan.dx:g} m; {kind}, {end - first} segments{kept}",
+                flag,
             )
         )
         if dam.concentration is None and q > 0.0:
@@ -217,6 +220,22 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
             rows += _deposit_behind(dam.name, found)
     return rows
+
+
+def _in_whole_cells(case: "Case", dam: RowDamSection, plan: RowPlan, crest: float) -> tuple[str, Flag]:
+    """Say where the crest of an impermeable dam lies for the water, whose cells it takes whole."""
+    first, end = dam_span(plan, dam)
+    if dam.concentration is not None or end == first:
+        return "", ""
+    over = crest - plan.bottom[first:end]
+    whole = np.round(over / plan.cell) * plan.cell
+    off = whole - over
+    if float(np.abs(off).max()) < WHOLE * plan.cell:
+        return "", ""
+    heights = f"{100.0 * whole.min():.4g}"
+    heights += f" to {100.0 * whole.max():.4g}" if whole.max() - whole.min() > WHOLE * plan.cell else ""
+    said = f"; for the water it is {heights} cm high, in whole cells of {100.0 * plan.cell:.4g} cm"
+    return said, "note"
 
 
 def _own_head(segments: int) -> str:
