@@ -10,8 +10,9 @@ from typing import Any
 LONGEST = 64  # largest number of characters of a quantity
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 _PLAIN_SIGNS = {0x3000: " ", 0x2212: "-"} | {0xFEE0 + code: chr(code) for code in range(0x21, 0x7F)}
+_FRACTION = re.compile(r"([+-]?)(?:([0-9]+)[ -])?([0-9]+)/([1-9][0-9]*)(?=\s*[A-Za-z\"])")  # of an inch
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?![0-9,])")
-_FACTOR = re.compile(r"([A-Za-zμΩÅ°%]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
+_FACTOR = re.compile(r"([A-Za-zμΩÅ°%‰]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
 _NAMES = {  # quantity that an SI unit measures, for messages
     "m": "a length",
     "s": "a time",
@@ -64,6 +65,14 @@ COMMON = {  # common units, because Pint takes long to read its definitions; a t
     "MB": (8e6, _BIT),
     "GB": (8e9, _BIT),
 }
+TRADE = {  # units of the trade in countries that measure in feet, which Pint does not know or calls otherwise
+    "cfs": (0.3048**3, (("meter", 3), ("second", -1))),
+    "gpm": (3.785411784e-3 / 60.0, (("meter", 3), ("second", -1))),  # of the United States
+    "pcf": (0.45359237 / 0.3048**3, (("gram", 1), ("meter", -3))),
+    "psf": (0.45359237 * 9.80665 / 0.3048**2, _PASCAL),
+    "permille": (1e-3, ()),
+    "‰": (1e-3, ()),
+}
 
 
 class UnitError(ValueError):
@@ -88,8 +97,8 @@ def quantity(text: object, unit: str) -> float:
 
     >>> quantity("100 N/cm", "N/m")
     10000.0
-    >>> quantity("0.2cm", "m")
-    0.002
+    >>> quantity("0.2cm", "m"), quantity("1 1/2 in", "m"), round(quantity("10 cfs", "m3/s"), 6)
+    (0.002, 0.0381, 0.283168)
     """
     example = _example(unit)
     if isinstance(text, bool) or not isinstance(text, str):
@@ -101,6 +110,9 @@ def quantity(text: object, unit: str) -> float:
     if len(text) > LONGEST:
         raise UnitError(f"longer than {LONGEST} characters; needs {_kind(unit)} such as {example}")
     body = plain_signs(text).strip()
+    if fraction := _FRACTION.match(body):
+        sign, whole, top, below = fraction.groups()
+        body = f"{sign}{int(whole or 0) + int(top) / int(below):.17g} {body[fraction.end() :]}"
     found = _NUMBER.match(body)
     if found is not None and (comma := _DECIMAL_COMMA.match(body)):
         point = comma.group().replace(",", ".")
@@ -232,7 +244,7 @@ def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
 @cache
 def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
     """Factor to SI and root dimension of one unit name; angles keep `radian`."""
-    return COMMON[name] if name in COMMON else from_pint(name)
+    return COMMON.get(name) or TRADE.get(name) or from_pint(name)
 
 
 def from_pint(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:

@@ -38,7 +38,7 @@ FAR = [
     "mesh",
     "nozzle",
     "salinity",
-    "temperature",
+    "humidity",
     "hertz",
     "x",
     "dt",

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ryusa.casefile.quantities import read_ratio
 from ryusa.units import COMMON, UnitError, format_quantity, from_pint, quantity
 
 GOOD = [
@@ -127,3 +128,44 @@ def test_texts_near_quantities_raise_no_other_error(text: str) -> None:
 def test_common_units_agree_with_pint(name):
     factor, bases = from_pint(name)
     assert (factor, tuple(sorted(bases))) == COMMON[name]
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("1 cfs", "m3/s", 0.028316846592),
+        ("35.3146667 cfs", "m3/s", 1.0),
+        ("10 cfs/ft", "m2/s", 0.9290304),
+        ("15850.323 gpm", "m3/s", 1.0),
+        ("165 pcf", "kg/m3", 2643.0456),
+        ("62.4 pcf", "kg/m3", 999.552),
+        ("1 psf", "Pa", 47.88026),
+        ("3/8 in", "m", 0.009525),
+        ("1 1/2 in", "m", 0.0381),
+        ("-3/4 in", "m", -0.01905),
+        ("1-1/4 in", "m", 0.03175),
+        ("\uff13/\uff18 in", "m", 0.009525),
+    ],
+)
+def test_units_of_the_trade_and_fractions_of_an_inch_are_read(text, unit, value):
+    assert quantity(text, unit) == pytest.approx(value, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1:20", 0.05),
+        ("1 : 20", 0.05),
+        ("5 ‰", 0.005),
+        ("5 permille", 0.005),
+        ("-1:20", -0.05),
+        ("\uff11/\uff12\uff10", 0.05),
+    ],
+)
+def test_slopes_are_written_as_the_trade_writes_them(text, value):
+    assert read_ratio(text) == pytest.approx(value, rel=1e-12)
+
+
+def test_a_slope_that_may_be_of_earthworks_is_asked_for():
+    with pytest.raises(ValueError, match="2/1 or 1/2"):
+        read_ratio("2:1")

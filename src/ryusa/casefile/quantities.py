@@ -16,9 +16,11 @@ from pydantic import (
 from pydantic_core import CoreSchema, core_schema
 
 from ryusa.laws._family import Family
-from ryusa.units import quantity
+from ryusa.units import plain_signs, quantity
 
-_RATIO = re.compile(r"\s*([+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:/\s*([0-9]*\.?[0-9]+)|(%))?\s*")
+_RATIO = re.compile(
+    r"\s*([+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:([/:])\s*([0-9]*\.?[0-9]+)|(%|‰|permille))?\s*"
+)
 
 
 def _si(unit: str) -> BeforeValidator:
@@ -33,18 +35,20 @@ def _text(what: str, *examples: str) -> WithJsonSchema:
 
 
 def read_ratio(value: Any) -> Any:
-    """Read a number, `"1/20"` or `"5 %"`; anything else goes on to the type check.
+    """Read a number, `"1/20"`, `"1:20"`, `"5 %"` or `"5 permille"`; anything else goes on to the type check.
 
-    >>> read_ratio("1/20")
-    0.05
+    >>> read_ratio("1/20"), read_ratio("1:20"), read_ratio("5 ‰")
+    (0.05, 0.05, 0.005)
     """
     if not isinstance(value, str):
         return value
-    found = _RATIO.fullmatch(value[:64])
+    found = _RATIO.fullmatch(plain_signs(value[:64]))
     if found is None:
         raise ValueError("needs a number or a ratio such as '1/20'")
-    top, below, percent = found.groups()
-    bottom = 100.0 if percent else float(below or 1.0)
+    top, sign, below, part = found.groups()
+    bottom = {None: float(below or 1.0), "%": 100.0}.get(part, 1000.0)
+    if sign == ":" and abs(float(top)) > bottom:
+        raise ValueError(f"'{value.strip()}' is read in two ways: write {top}/{below} or {below}/{top}")
     if bottom == 0.0 or not math.isfinite(float(top) / bottom):
         raise ValueError("needs a finite ratio such as '1/20'")
     return float(top) / bottom + 0.0  # no -0.0

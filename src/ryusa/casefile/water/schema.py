@@ -1,14 +1,15 @@
 """Keys of [water]."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from ryusa.casefile.column.schema import ColumnSection
 from ryusa.casefile.quantities import Density, Length, Number, PositiveLength, Speed, Viscosity, WordOf
 from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.section import Section
+from ryusa.casefile.water.temperature import density_of_water, read_temperature, viscosity_of_water
 from ryusa.laws import families
 
 RIVALS = (("tau_star", "u_star"),)
@@ -42,6 +43,16 @@ class WaterSection(Section):
     """Density of water, rho_w."""
     viscosity: Annotated[Viscosity, Field(ge=1.0e-12, le=1.0e3)] = 1.0e-6
     """Kinematic viscosity nu."""
+    temperature: (
+        Annotated[
+            float,
+            BeforeValidator(read_temperature),
+            WithJsonSchema({"type": "string", "title": "temperature", "examples": ["15 degC", "59 degF"]}),
+        ]
+        | None
+    ) = None
+    """Temperature of fresh water, "0 degC" to "40 degC": gives density and viscosity where they are not
+    given."""
     drag: Annotated[str, WordOf(families.Drag)] = "Schiller-Naumann"
     """Law of the drag coefficient C_D; the default is that of smooth spheres, natural sand of the same
     diameter settles more slowly ("Ferguson-Church sand")."""
@@ -91,3 +102,23 @@ class WaterSection(Section):
     """The column of water of profile = "column"."""
     row: RowSection | None = None
     """Columns in a row along the stream instead of one, with profile = "column": a river."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_temperature(cls, data: Any) -> Any:
+        """Put density and viscosity where the temperature alone is given."""
+        if not isinstance(data, dict) or data.get("temperature") is None:
+            return data
+        try:
+            t = read_temperature(data["temperature"])
+        except ValueError:
+            return data  # reported with its key
+        if "density" in data and "viscosity" in data and isinstance(data["temperature"], str):
+            raise ValueError(
+                "temperature has no effect beside density and viscosity: leave one of the three out"
+            )
+        made = {
+            "density": f"{density_of_water(t):.9g} kg/m3",
+            "viscosity": f"{viscosity_of_water(t):.9g} m2/s",
+        }
+        return made | data
