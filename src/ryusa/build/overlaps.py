@@ -82,6 +82,11 @@ def _against_walls(placement: Placement, key: str) -> None:
         worst = int(np.argmax(relative))
         if relative[worst] > TOLERANCE:
             who = name(placement, worst)
+            if relative.min() >= 0.5 and relative[worst] > 1.0:  # centres behind it, by more than their size
+                raise CaseError(
+                    key, None, f"{'all' if len(relative) > 1 else 'the'} first grains lie behind plane "
+                    f"'{wall.name}': its normal points into the room of the grains; turn it round",
+                )  # fmt: skip
             raise CaseError(
                 key, None, f"first grains overlap: {who} and plane '{wall.name}' by {relative[worst]:.3g} d"
             )

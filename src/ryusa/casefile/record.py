@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
     from ryusa.casefile.derive import Derived
 
+LONG = 5.0e-3  # [s] that no contact of grains lasts
 MANY = 1000  # free grains above which contacts are recorded only on request
 CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move", "discharge")
 
@@ -158,4 +159,13 @@ def check_frames(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iter
     interval = case.record.frames
     if interval < derived.dt:
         written = data.get("record", {}).get("frames", f"{interval:g} s")
+        stiffness = "youngs_modulus" if case.contact.youngs_modulus is not None else "stiffness"
+        given = data.get("contact", {}).get(stiffness)
+        if case.time.step is None and derived.shortest > max(interval, LONG):
+            yield CaseError(
+                f"contact.{stiffness}", given, f"is so small that the shortest contact lasts "
+                f"{derived.shortest:.4g} s, longer than record.frames, {interval:g} s: take stiffer contacts "
+                "(`ryusa check` shows overlaps), or frames farther apart",
+            )  # fmt: skip
+            return
         yield CaseError("record.frames", written, f"must be at least one step, {derived.dt:.4g} s")

@@ -62,7 +62,7 @@ def _backwater(
 
 def _friction_slope(speed: float, depth: float, g: float, rough: float, nu: float) -> float:
     """Loss of head over the way at a mean speed [m/s] and depth [m], that of normal flow [-]."""
-    low, high = 0.0, speed  # friction velocity
+    low, high, shear = 0.0, speed, speed  # friction velocity
     for _ in range(40):
         shear = 0.5 * (low + high)
         if rough == 0.0:
