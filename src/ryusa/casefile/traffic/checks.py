@@ -16,6 +16,7 @@ from ryusa.casefile.traffic.values import (
     fed_count,
     feed_end,
     grains_per_second,
+    seconds_of_total,
     share_filled,
 )
 from ryusa.errors import CaseError
@@ -206,6 +207,18 @@ def _rate(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
     if not 0.0 < rate < math.inf:
         yield CaseError(f"{key}.rate", text, "must be greater than 0")
         return
+    if feed.total is not None:
+        amount, name = feed.total
+        last, seconds = min(feed.end or math.inf, case.stop.time or math.inf), seconds_of_total(case, feed)
+        if not amount > 0.0:
+            yield CaseError(f"{key}.total", f"{amount:g} {name}", "must be greater than 0")
+            return
+        if feed.begin + seconds > last * (1.0 + 1e-9):
+            yield CaseError(
+                f"{key}.total", f"{amount:g} {name}",
+                f"is not fed by {last:g} s: at this rate it takes {seconds:.4g} s from {feed.begin:g} s on",
+            )  # fmt: skip
+            return
     if math.isinf(end):
         yield CaseError(f"{key}.end", None, "missing; without stop.time a feed needs an end")
         return

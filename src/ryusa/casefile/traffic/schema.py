@@ -45,6 +45,36 @@ FeedRate = Annotated[
 ]
 
 
+_COUNT = re.compile(r"\s*([0-9]+)\s*grains?\s*")
+Total = tuple[float, Literal["kg", "grains"]]
+
+
+def read_total(value: Any) -> Any:
+    """Read a mass or a number of grains.
+
+    >>> read_total("500 g"), read_total("200 grains")
+    ((0.5, 'kg'), (200.0, 'grains'))
+    """
+    if isinstance(value, list | tuple):  # as case.json holds it
+        return tuple(value)
+    found = _COUNT.fullmatch(value[:64]) if isinstance(value, str) else None
+    if found is not None:
+        return float(found.group(1)), "grains"
+    try:
+        return quantity(value, "kg"), "kg"
+    except UnitError:
+        raise ValueError("needs a mass or a number of grains, such as '0.5 kg' or '200 grains'") from None
+
+
+FeedTotal = Annotated[
+    Total,
+    BeforeValidator(read_total),
+    WithJsonSchema(
+        {"type": "string", "format": "quantity", "title": "total", "examples": ["0.5 kg", "200 grains"]}
+    ),
+]
+
+
 class FeedSection(Section):
     """Grains that enter during the run, in a box or through a disc."""
 
@@ -69,6 +99,8 @@ class FeedSection(Section):
     """Simulated time at which the first grain is due."""
     end: Moment | None = None
     """Simulated time from which no new grain is due; stop.time when not given."""
+    total: FeedTotal | None = None
+    """Mass or number of grains after which the feed stops, "0.5 kg" or "200 grains"."""
     moves_with: Name | None = None
     """Name of a wall to which the feed is attached, and with which it moves and turns. Place and normal are
     those at t = 0, and velocity is relative to the wall, with its direction at t = 0."""

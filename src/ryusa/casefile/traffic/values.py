@@ -23,7 +23,16 @@ FULLEST_PLANE = 0.547  # discs in a plane
 def feed_end(case: "Case", feed: FeedSection) -> float:
     """When the last grain of a feed may be due [s]; inf where the case does not say."""
     ends = [one for one in (feed.end, case.stop.time) if one is not None]
-    return min(ends, default=math.inf)
+    return min([*ends, feed.begin + seconds_of_total(case, feed)])
+
+
+def seconds_of_total(case: "Case", feed: FeedSection) -> float:
+    """Time in which a feed brings its `total` [s]; inf without one."""
+    each = grains_per_second(case, feed)
+    if feed.total is None or not each > 0.0:
+        return math.inf
+    amount, unit = feed.total
+    return amount / (each * mean_mass(case, feed.material)) if unit == "kg" else amount / each
 
 
 def corners_of(feed: FeedSection) -> tuple[Floats, Floats] | None:
