@@ -240,7 +240,7 @@ def test_a_run_stopped_within_a_flood_gives_the_same_bits(tmp_path: Path, stop_a
 @pytest.mark.parametrize(
     ("discharge", "more", "says"),
     [
-        ("0 m2/s", {}, "must be above 0"),
+        ("-0.01 m2/s", {}, "must be 0 or above"),
         ("6 L/s", {}, "discharge of the whole width"),
         ("0.04 m2/s", {"water.row.upstream": "{ end = 'wall' }"}, "needs water.row.upstream with end ="),
         (
@@ -261,3 +261,16 @@ def test_cells_and_step_are_made_for_the_peak() -> None:
     assert flood["Courant number"].value > steady["Courant number"].value
     assert flood["cell"].origin != steady["cell"].origin  # of how many
     assert flood["discharge from 0.75 s"].value == 0.05
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("first", ["0.03 m2/s", "0 m2/s"])
+def test_a_flood_begins_and_ends_with_no_discharge(tmp_path: Path, first: str) -> None:
+    upstream = f"{{ end = 'discharge', discharge = '{first}' }}"
+    steps = "[{ at = '0.5 s', discharge = '0.02 m2/s' }, { at = '1 s', discharge = '0 m2/s' }]"
+    found = run(
+        tmp_path / "run", overrides={"water.row.upstream": upstream, "timeline": steps, "stop.time": "1.5 s"}
+    )
+    before = 0.5 * (0.03 if first.startswith("0.03") else 0.0)
+    assert found.complete
+    assert found.row.passed[-1, 0] == pytest.approx(before + 0.5 * 0.02, rel=0.02)

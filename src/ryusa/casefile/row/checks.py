@@ -25,6 +25,7 @@ from ryusa.casefile.row.values import (
     inlet_depth,
     line_points,
     not_downstream,
+    peak_discharge,
     reaches,
     row_plan,
     stream,
@@ -278,8 +279,9 @@ def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
             yield CaseError(f"{key}.{one}", shown, f"has no effect with end '{end.end}'")
     if end.discharge is not None:
         value, unit = end.discharge
-        if not value > 0.0:
-            yield CaseError(f"{key}.discharge", f"{value:g} {unit}", "must be above 0, along +x")
+        if not (value > 0.0 or (value == 0.0 and peak_discharge(case) > 0.0)):
+            allowed = "must be above 0, along +x; or 0 where [[timeline]] has a discharge"
+            yield CaseError(f"{key}.discharge", f"{value:g} {unit}", allowed)
         if unit == "m3/s" and width_of(case) is None:
             yield CaseError(
                 "water.row.width", None, f"missing; {key}.discharge is in m3/s: give the width of the "

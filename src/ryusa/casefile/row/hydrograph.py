@@ -43,7 +43,7 @@ def check_hydrograph(case: "Case") -> Iterator[CaseError]:
                 "timeline: leave it out, and each enters as the flow asks",
             )  # fmt: skip
             return
-        elif not value > 0.0:
-            yield CaseError(key, shown, "must be above 0, along +x")
+        elif not value >= 0.0:
+            yield CaseError(key, shown, "must be 0 or above, along +x")
         elif unit == "m3/s" and width_of(case) is None:
             yield CaseError("water.row.width", None, f"missing; {key} is a discharge of the whole width")
