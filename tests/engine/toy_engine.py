@@ -10,6 +10,7 @@ from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping, damping_in_steps, normal_force, shear_strength, slide
+from ryusa.laws.families import Cap, Slip
 from ryusa.laws.geometry import arm, turn, wrap
 from ryusa.model import EVENT, Contacts, Scene, State, Tally, Term
 from ryusa.model.state import make_read_only
@@ -23,7 +24,8 @@ class ToyEngine:
         has_not = {
             "water": scene.water.profile, "events": scene.events, "rolling friction": scene.rolling.model,
             "plane scenes": scene.plane_case, "planes": scene.n_plane, "Hertz contacts": law.force,
-            "tension": law.tension, "other slip rules": law.slip, "caps of the slip force": law.cap,
+            "tension": law.tension, "other slip rules": law.slip != Slip.TOTAL,
+            "caps of the slip force": law.cap != Cap.TOTAL,
             "other damping": law.damping, "contacts that begin within steps": law.timing,
             "locked rotation": not scene.rotation,
         }  # fmt: skip
@@ -117,9 +119,10 @@ class ToyEngine:
             work[Term.STEP] -= 0.5 * (f_old - d_old) * (2.0 * hdt * closing + (f_old - d_old) / law.k_n)
         old = np.array(turn(*spring, *normal, 0.5 * dt * float((w_i + w_j) @ normal)))
         spring, drag = old - law.k_s * slip * dt, -eta_s * slip * (f_n > 0.0)
-        tau_c = shear_strength(e_n, law.cohesion, law.mu)
-        share = slide(float(np.linalg.norm(spring)), tau_c, False, False)[0] * (f_n > 0.0)
-        spring *= share
+        tau_c = shear_strength(f_n, law.cohesion, law.mu)
+        share, less, _ = slide(float(np.linalg.norm(spring + drag)), tau_c, False, True)
+        share *= f_n > 0.0
+        spring = (share * spring + less * drag) * (f_n > 0.0)
         work[Term.DASH_S] -= hdt * float(slip @ (dash + drag))
         if share < 1.0:
             lost = 0.5 * float(old @ old - spring @ spring) / law.k_s - hdt * float(slip @ (old + spring))

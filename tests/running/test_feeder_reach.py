@@ -273,7 +273,7 @@ REFUSED = [
     ({"grains.density": "2600 kg/m3"}, "has grains.density = 2650, and this case 2600"),
     ({"contact.friction_angle": "31 deg"}, "has contact.friction = 0.57735, and this case 0.600861"),
     ({"water.viscosity": "2e-6 m2/s"}, "has water.viscosity = 1e-06, and this case 2e-06"),
-    ({"water.drag": "Schiller-Naumann"}, "has water.drag = '24/Re[+]0.4'"),
+    ({"water.drag": "24/Re+0.4"}, "has water.drag = 'Schiller-Naumann'"),
     ({"water.column.packed": "0.6"}, "has water.column.packed = 0.55, and this case 0.6"),
     ({"motion.gravity": "1.6 m/s2"}, "has motion.gravity = 9.80665, and this case 1.6"),
     ({"build.walls": "true"}, "has no side walls, and this river has some"),
