@@ -195,7 +195,7 @@ def test_water_behind_a_dam_in_a_tilted_frame_stays_still(tmp_path: Path) -> Non
 def test_a_row_filled_over_its_top_stops_with_the_place(tmp_path: Path) -> None:
     text = WEIR.replace('{ end = "free fall" }', '{ end = "wall" }')
     with pytest.raises(WaterError, match=r"above the top of the column, at x = .*water\.row\.height"):
-        run(tmp_path / "run", text, {"stop.time": "10 s"})
+        run(tmp_path / "run", text, {"stop.time": "10 s", "water.row.height": "'20 cm'"})
     assert Results.open(tmp_path / "run").status == schema.FAILED
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, crest_of
 from ryusa.measure.profiles import Layers, _mean, _quotient
 from ryusa.measure.snapshot import scene_at
@@ -123,6 +124,7 @@ def contact_stress(
     mean radius. The fabric tensor is the mean of n_a n_b over the contacts of free grains with each other
     (Satake 1982): its trace is 1.
     """
+    # One function: half of it is what it returns
     open_ = not math.isfinite(run.scene.period[0]) and not run.scene.plane_case
     t, first, last, scene, area = window_of(run, begin, end, least=1, plan=_plan if open_ else None)
     length = layer * float(scene.d.mean())
@@ -181,12 +183,17 @@ def contact_stress(
 
 def _plan(run: Run, first: int, last: int, scene: Scene) -> float:
     """Area of the grains seen from above, mean of a window [m2]: the hull of centres and a radius more."""
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
     r, found = 0.5 * float(scene.d.mean()), list[float]()
     for k in range(first, last):
         x = np.asarray(run.frames.x[k], dtype=np.float64)[:, :2]
-        hull = ConvexHull(x[np.isfinite(x[:, 0])])
+        try:
+            hull = ConvexHull(x[np.isfinite(x[:, 0])])
+        except QhullError:
+            raise ResultsError(
+                "the scene is open along x, and its grains lie on a line: no area to divide by"
+            ) from None
         found.append(
             float(hull.volume + hull.area * r + math.pi * r * r)
         )  # in a plane these are area and rim

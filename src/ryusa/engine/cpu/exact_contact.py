@@ -14,7 +14,7 @@ from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_events import make_begin_and_end
 from ryusa.engine.cpu.contact_rows import springs_of_row
-from ryusa.engine.cpu.wall_contacts import share_of
+from ryusa.engine.cpu.wall_shares import share_of
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import (

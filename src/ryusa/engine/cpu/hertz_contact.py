@@ -12,7 +12,7 @@ from typing import Any
 from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import SHORT
-from ryusa.engine.cpu.wall_contacts import share_of
+from ryusa.engine.cpu.wall_shares import share_of
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner

@@ -15,6 +15,7 @@ from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, WallArrays
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.faces import in_frame, in_world, nearest_image, nearest_of_face
 from ryusa.engine.cpu.simd.prefetch import prefetch
+from ryusa.engine.cpu.wall_shares import before, deepest_of_directions, share_forces
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
@@ -28,11 +29,7 @@ SAME_POINT = 1e-9  # of the radius: nearest points closer than this are one, as 
 ALIKE = math.cos(math.radians(45.0))  # of normals of one smooth surface between which a contact may go over
 APART, BEHIND, SAME = 0, 1, 2  # how a contact stands to a face that is nearer
 UNDECIDED = -2.0  # in place of a row that takes the place of a contact
-EXACT_SHARE, SWEEPS = 1e-9, 400  # of the largest overlap; in all rows of a grain together
-LEAST_SHARE, LEAST_OVERLAP = 1e-12, 1e-9  # [-]; of the radius
 CROWD = 24  # planes and faces near a grain
-CELLS = 10.0  # of directions to a unit: contacts whose normals belong to one cell are one, the deepest
-LIKE_MOST = 0.98  # of two contacts of one normal; below 1, so that the forces of many are determined
 AHEAD = 8  # faces whose numbers are asked for before they are needed
 
 
@@ -261,16 +258,6 @@ def resolve_walls(
         begin = stop
 
 
-@inner(fastmath=FAST, forceinline=True)
-def _before(q: int, s: int, n_plane: int, face: Any, met: Any) -> bool:
-    """Whether row q comes before row s: the nearer; of two as near a face before a plane, then in order."""
-    if met[q, F.DISTANCE] != met[s, F.DISTANCE]:
-        return met[q, F.DISTANCE] < met[s, F.DISTANCE]
-    if (face[q] < n_plane) != (face[s] < n_plane):
-        return face[s] < n_plane
-    return q < s
-
-
 @inner(fastmath=FAST, forceinline=False)
 def _one_in_a_place(
     begin: int, stop: int, i: int, reach_on: float, n_plane: int, c: Any, x_of: Any, number: Any, face: Any,
@@ -278,15 +265,16 @@ def _one_in_a_place(
     points: Any, normals: Any,
 ) -> None:  # fmt: skip
     """Keep one contact in one place among the planes and faces of grain i, rows begin..stop-1."""
+    # One function: its passes over the same rows follow one another, each on what the one before left
     r = x_of[i, 3]
     if stop - begin > CROWD:  # a grain in the tip of a fine mesh: pairs of so many faces would take too long
-        _deepest_of_directions(begin, stop, r, n_plane, face, met)
+        deepest_of_directions(begin, stop, r, n_plane, face, met)
     for s in range(begin, stop):  # what lies behind another is none, whatever becomes of that
         if met[s, F.DISTANCE] >= r + reach_on or met[s, F.BY] >= 0.0:
             continue
         met[s, F.BY], nearest = UNDECIDED, math.inf
         for q in range(begin, stop):
-            if q == s or met[q, F.DISTANCE] >= nearest or not _before(q, s, n_plane, face, met):
+            if q == s or met[q, F.DISTANCE] >= nearest or not before(q, s, n_plane, face, met):
                 continue
             stands = _stands(
                 s, i, q, face[q] - n_plane, face[q], c, x_of, poses, rows, centre, points, normals, met
@@ -296,7 +284,7 @@ def _one_in_a_place(
     for _ in range(begin, stop):  # of what is left the nearest is kept first, and takes in what is near to it
         s = -1
         for q in range(begin, stop):
-            if met[q, F.BY] == UNDECIDED and (s < 0 or _before(q, s, n_plane, face, met)):
+            if met[q, F.BY] == UNDECIDED and (s < 0 or before(q, s, n_plane, face, met)):
                 s = q
         if s < 0:
             break
@@ -320,7 +308,7 @@ def _one_in_a_place(
             first = face[s] < face[to] if plane == other else other
             if first and _same_point(s, to, r, met):
                 met[s, F.BY], met[to, F.BY] = -1.0, s
-    _share(begin, stop, r, n_plane, face, number, touching, met)
+    share_forces(begin, stop, r, n_plane, face, number, touching, met)
     for s in range(begin, stop):  # memory goes to the contact that takes the place
         k = number[s]
         if not touching[k]:
@@ -345,137 +333,6 @@ def _one_in_a_place(
                 met[s, F.GAP + a] = -(1.0 + 1e-12) * 2.0 * r * met[s, F.AWAY + a]
         else:
             met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = B.FAR, 0.0, 0.0
-
-
-@inner(fastmath=FAST, forceinline=True)
-def _alike_by(k: int, g: int, n_plane: int, face: Any, met: Any) -> float:
-    """How far the contacts in two rows are one, by the angle between their normals: 1/3 at 15 deg."""
-    if face[k] < n_plane and face[g] < n_plane:
-        return 0.0  # planes are as in scenes without walls
-    a = F.AWAY
-    along = met[k, a] * met[g, a] + met[k, a + 1] * met[g, a + 1] + met[k, a + 2] * met[g, a + 2]
-    one = max(0.5 + 0.5 * along, 0.0)
-    for _ in range(6):  # to the 64th power
-        one *= one
-    return LIKE_MOST * one
-
-
-@inner(fastmath=FAST, forceinline=True)
-def _direction(s: int, met: Any) -> int:
-    """Number of the cell of directions that the normal in a row belongs to, about 6 deg wide."""
-    cell = 0
-    for k in range(3):
-        cell = cell * 64 + int((met[s, F.AWAY + k] + 1.5) * CELLS)
-    return cell
-
-
-@inner(fastmath=FAST, forceinline=False)
-def _deepest_of_directions(begin: int, stop: int, r: float, n_plane: int, face: Any, met: Any) -> int:
-    """Keep the deepest of the contacts whose normals belong to one cell of directions; how many are left."""
-    left = 0
-    for s in range(begin, stop):
-        if met[s, F.BY] != -1.0 or met[s, F.DISTANCE] >= r:
-            continue
-        cell, by = _direction(s, met), -1
-        for q in range(begin, s):
-            if met[q, F.BY] == -1.0 and met[q, F.DISTANCE] < r and _direction(q, met) == cell:
-                by = q
-                break
-        if by < 0:
-            left += 1
-        elif _before(by, s, n_plane, face, met):
-            met[s, F.BY] = by
-        else:
-            met[by, F.BY] = s
-    return left
-
-
-@inner(fastmath=FAST, forceinline=False)
-def _share(
-    begin: int, stop: int, r: float, n_plane: int, face: Any, number: Any, touching: Any, met: Any
-) -> None:
-    """Write minus the share of its force that each contact of a grain has into its place in BY (design/0019).
-
-    With overlaps d and K the matrix of `_alike_by` the forces over k_n are the f >= 0 that make f.d - f.K.f/2
-    largest, by sweeps one after the other; a share is f over d.
-    """
-    if _deepest_of_directions(begin, stop, r, n_plane, face, met) == 0:
-        return
-    count, largest = 0, 0.0
-    for s in range(begin, stop):  # a contact with exact timing may act although it has no overlap any more
-        if met[s, F.BY] == -1.0 and (met[s, F.DISTANCE] < r or touching[number[s]]):
-            overlap = max(r - met[s, F.DISTANCE], LEAST_OVERLAP * r)
-            met[s, F.OVERLAP], met[s, F.FORCE] = overlap, overlap
-            count, largest = count + 1, max(largest, overlap)
-        else:
-            met[s, F.OVERLAP] = met[s, F.FORCE] = 0.0
-    if count < 2:
-        return
-    for s in range(begin, stop):
-        if met[s, F.OVERLAP] > 0.0:
-            total = 1.0
-            for q in range(begin, stop):
-                if q != s and met[q, F.OVERLAP] > 0.0:
-                    total += _alike_by(s, q, n_plane, face, met)
-            met[s, F.FORCE] = met[s, F.OVERLAP] / total
-    for _ in range(max(SWEEPS // count, 20)):
-        change = 0.0
-        for s in range(begin, stop):
-            if met[s, F.OVERLAP] == 0.0:
-                continue
-            force = met[s, F.OVERLAP]
-            for q in range(begin, stop):
-                if q != s and met[q, F.FORCE] > 0.0:
-                    force -= _alike_by(s, q, n_plane, face, met) * met[q, F.FORCE]
-            force = max(force, 0.0)
-            change = max(change, abs(force - met[s, F.FORCE]))
-            met[s, F.FORCE] = force
-        if change <= EXACT_SHARE * largest:
-            break
-    for s in range(begin, stop):
-        if met[s, F.OVERLAP] > 0.0:
-            met[s, F.BY] = -max(met[s, F.FORCE] / met[s, F.OVERLAP], LEAST_SHARE)
-
-
-@inner(fastmath=FAST, forceinline=True)
-def keep_books(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
-    """Keep the books of the faces in a batch that have a share of their force, and write the shares."""
-    for l in range(B.LANES):
-        batch[B.SHARE + l] = 1.0
-    for n in range(face_lanes[B.LANES]):
-        l = face_lanes[n]
-        share = -met[slot[selected[l]], F.BY]
-        if 0.0 < share < 1.0:
-            batch[B.SHARE + l] = share
-            for k in range(B.N_WORK):
-                batch[B.KEPT + k * B.PITCH + l] = batch[B.WORK + k * B.PITCH + l]
-
-
-@inner(fastmath=FAST, forceinline=True)
-def take_shares(face_lanes: Any, batch: Any) -> None:
-    """Reduce forces, torques and work of the faces in a batch to their shares."""
-    for n in range(face_lanes[B.LANES]):
-        l = face_lanes[n]
-        share = batch[B.SHARE + l]
-        if share == 1.0:
-            continue
-        for k in range(B.N_WORK):
-            before = batch[B.KEPT + k * B.PITCH + l]
-            at = B.WORK + k * B.PITCH + l
-            batch[at] = before + share * (batch[at] - before)
-        for k in range(3):
-            batch[B.FORCE + 4 * l + k] *= share
-            batch[B.TORQUE_I + 4 * l + k] *= share
-            batch[B.TORQUE_J + 4 * l + k] *= share
-
-
-@inner(fastmath=FAST, forceinline=True)
-def share_of(k: int, n_solid: int, candidates: CandidateArrays, met: Any) -> float:
-    """Share of its force that candidate k has, in a scene with walls."""
-    if candidates.j[k] < n_solid:
-        return 1.0
-    by = met[candidates.slot[k], F.BY]
-    return min(-by, 1.0) if by < 0.0 else 1.0
 
 
 @inner(fastmath=FAST, forceinline=True)
