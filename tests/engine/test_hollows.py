@@ -226,7 +226,9 @@ def test_a_belt_on_a_floor_drags_the_grain_that_lies_on_it():
     )
     made = scene([[0, 0, R]], D, planes=[FLOOR], walls=[belt], friction=0.3, restitution=0.5)
     found = run(made, round(0.1 / made[0].dt)).state()
-    assert found.v[0, 0] + R * -found.omega[0, 1] == pytest.approx(0.1, rel=0.02) or found.v[0, 0] > 0.02
+    # friction turns it backwards until the point of contact goes with the belt: v = 2/7 of its speed
+    assert found.v[0, 0] == pytest.approx(0.1 * 2 / 7, rel=5e-3)
+    assert found.v[0, 0] - R * found.omega[0, 1] == pytest.approx(0.1, rel=5e-3)
     lies = run(scene([[0, 0, R]], D, planes=[FLOOR], friction=0.3, restitution=0.5), 1000).state()
     assert lies.v[0, 0] == 0.0
 
@@ -323,11 +325,9 @@ def test_a_step_too_long_for_the_speed_is_named_as_the_remedy(way):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", [way for way in WAYS if way not in {"moving wall", "turning wall"}])
 def test_a_grain_that_is_slow_enough_comes_back(way):
     more, x, v = WAYS[way]
-    if "motion" in str(more) or "wall" in way:
-        pytest.skip("the wall moves")
     made = scene(
         [x],
         D,
@@ -340,9 +340,9 @@ def test_a_grain_that_is_slow_enough_comes_back(way):
         timing=ContactTiming.AT_STEPS,
         **more,
     )
-    found = run(made, round(0.015 / made[0].dt)).state()
+    found = run(made, round(0.03 / made[0].dt)).state()
     assert float(np.linalg.norm(found.v[0])) == pytest.approx(0.5 * float(np.linalg.norm(v)), rel=5e-3)
-    assert float(np.dot(found.v[0], v)) < 0.0 or way in {"rectangle from below", "mesh"}
+    assert float(np.dot(found.v[0], v)) < 0.0
 
 
 def test_a_grain_rolls_past_the_rim_of_a_plate_without_a_fault():
