@@ -173,3 +173,20 @@ def test_every_measure_answers_or_refuses_by_name(kind, tmp_path):
         except (ResultsError, CaseError) as error:
             assert len(str(error)) > 20, entry.name
     assert answered >= 6
+
+
+@pytest.mark.full
+def test_grains_without_weight_between_plates_have_a_stress(tmp_path):
+    run = ryusa.run(
+        read(
+            case_path("shear_cell.toml"),
+            {"stop.time": "60 ms", "timeline": "[]", "record.settle": "20 ms", "record.forces": "true"},
+        ),
+        tmp_path / "run",
+        progress=False,
+    )
+    found = contact_stress(run)
+    assert np.isnan(found.deviation)
+    assert any("no weight" in note for note in found.averages.notes)
+    assert np.isfinite(found.xx.value).all()
+    assert run.draw("contact_stress") is not None

@@ -142,7 +142,8 @@ def contact_stress(
     inertial = np.abs(shear) * d * np.sqrt(density / np.where(p.value > 0.0, p.value, np.nan))
     above = weights.mean(axis=0)
     stress = {name: _mean(name, "Pa", whole[:, c]) for c, name in enumerate(("xx", "yy", "zz", "xz", "zx"))}
-    total = math.nan if run.case.get("water") else float(scene.m.sum() * np.abs(scene.gravity[2]) / area)
+    weight = float(scene.m.sum() * np.abs(scene.gravity[2]) / area)
+    total = math.nan if run.case.get("water") or weight == 0.0 else weight
     off = float(np.abs(stress["zz"].value - above[1]).max()) / total
     off_along = float(np.abs(stress["xz"].value + above[0]).max()) / total
     window = float(t[0]), float(t[-1])
@@ -228,7 +229,8 @@ def _balance(scene: Scene, area: float, off: float, off_along: float) -> tuple[s
         f"weight of the grains per area: {-weight[2]:.4g} Pa normal to the bed, {weight[0]:.4g} Pa along it"
     )
     if math.isnan(off):
-        return (said, "no balance of momentum: water carries part of the weight")
+        why = "the grains have no weight" if weight[2] == 0.0 else "water carries part of the weight"
+        return (said, f"no balance of momentum: {why}")
     return (
         said,
         f"balance of momentum: zz differs from the weight above by at most {off:.2%} of the whole weight, "
