@@ -12,14 +12,21 @@ from numpy.typing import NDArray
 
 from ryusa.model.scene import Bools, Floats, Scene
 from ryusa.model.wall_shape import ways_to_faces
-from ryusa.model.walls import FaceKind, face_boxes, pose
+from ryusa.model.walls import (
+    CELLS,
+    DOUBLINGS,
+    EXACT_SHARE,
+    LEAST_SHARE,
+    LIKE_MOST,
+    ON_FACE,
+    SAME_PLACE,
+    SWEEPS,
+    FaceKind,
+    face_boxes,
+    pose,
+)
 
 Ints = NDArray[np.int64]
-
-ON_FACE, SAME_PLACE = 1e-3, 1e-4  # of the radius: a point of an edge, or within a face, lies on another
-LIKE_MOST, POWER = 0.98, 64  # of contacts of one normal; of (1 + cos)/2
-CELLS = 10.0  # of directions to a unit
-EXACT, SWEEPS, LEAST = 1e-9, 400, 1e-12
 
 
 def shares_of_forces(overlap: Floats, away: Floats, plane: Bools) -> Floats:
@@ -39,11 +46,11 @@ def shares_of_forces(overlap: Floats, away: Floats, plane: Bools) -> Floats:
     cells = np.floor((away + 1.5) * CELLS).astype(np.int64) @ np.array([4096, 64, 1])
     left = [k for k in range(len(overlap)) if overlap[k] == overlap[cells == cells[k]].max()]
     if len(left) < 2:
-        share[[k for k in range(len(overlap)) if k not in left]] = LEAST
+        share[[k for k in range(len(overlap)) if k not in left]] = LEAST_SHARE
         return share
-    share[:] = LEAST
+    share[:] = LEAST_SHARE
     one, d = away[left], overlap[left]
-    like = LIKE_MOST * np.maximum(0.5 + 0.5 * one @ one.T, 0.0) ** POWER
+    like = LIKE_MOST * np.maximum(0.5 + 0.5 * one @ one.T, 0.0) ** 2**DOUBLINGS
     like[np.ix_(plane[left], plane[left])] = 0.0
     np.fill_diagonal(like, 0.0)
     force = d / (1.0 + like.sum(axis=1))
@@ -52,9 +59,9 @@ def shares_of_forces(overlap: Floats, away: Floats, plane: Bools) -> Floats:
         for k in range(len(d)):
             new = max(float(d[k] - like[k] @ force), 0.0)
             change, force[k] = max(change, abs(new - force[k])), new
-        if change <= EXACT * d.max():
+        if change <= EXACT_SHARE * d.max():
             break
-    share[left] = np.maximum(force / d, LEAST)
+    share[left] = np.maximum(force / d, LEAST_SHARE)
     return share
 
 

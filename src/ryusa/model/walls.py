@@ -21,6 +21,16 @@ class FaceKind(IntEnum):
     CYLINDER = 2  # centre of one end [m], unit axis [-], and (radius, length, 0) [m]: the shell, without ends
 
 
+# Which contacts of a grain with faces are one, and how they share a force (design/0019); engines and measures
+# go by the same numbers.
+ON_FACE = 1e-3  # of the radius: within it a point of an edge lies on a face
+SAME_PLACE = 1e-4  # of the radius: within it a point of one face lies on another
+LIKE_MOST = 0.98  # of two contacts of one normal; below 1, so that the forces of many are determined
+DOUBLINGS = 6  # of the exponent of (1 + cos a)/2, for an angle a between two normals: the 64th power
+CELLS = 10.0  # of directions to a unit: contacts whose normals belong to one cell are one, the deepest
+EXACT_SHARE, SWEEPS = 1e-9, 400  # of the largest overlap; in all contacts of a grain together
+LEAST_SHARE = 1e-12
+
 # columns of the motion of a wall
 BEGIN = 0  # time of the pose below [s]
 TURN = 1  # rotation at that time, world = turn . frame + shift, by rows, nine columns [-]

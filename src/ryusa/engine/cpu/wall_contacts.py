@@ -21,10 +21,8 @@ from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.status import FAULT_CROSSED, FAULT_NONE
 from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW, PLACED
-from ryusa.model.walls import SPIN, TOUCHED
+from ryusa.model.walls import ON_FACE, SAME_PLACE, SPIN, TOUCHED
 
-ON_FACE = 1e-3  # of the radius: within it a point of an edge lies on a face
-SAME_PLACE = 1e-4  # of the radius: within it a point of one face lies on another
 SAME_POINT = 1e-9  # of the radius: nearest points closer than this are one, as on an edge that faces share
 ALIKE = math.cos(math.radians(45.0))  # of normals of one smooth surface between which a contact may go over
 APART, BEHIND, SAME = 0, 1, 2  # how a contact stands to a face that is nearer

@@ -7,11 +7,9 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.arrays import CandidateArrays
 from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.model.walls import CELLS, DOUBLINGS, EXACT_SHARE, LEAST_SHARE, LIKE_MOST, SWEEPS
 
-EXACT_SHARE, SWEEPS = 1e-9, 400  # of the largest overlap; in all rows of a grain together
-LEAST_SHARE, LEAST_OVERLAP = 1e-12, 1e-9  # [-]; of the radius
-CELLS = 10.0  # of directions to a unit: contacts whose normals belong to one cell are one, the deepest
-LIKE_MOST = 0.98  # of two contacts of one normal; below 1, so that the forces of many are determined
+LEAST_OVERLAP = 1e-9  # of the radius
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -32,7 +30,7 @@ def _alike_by(k: int, g: int, n_plane: int, face: Any, met: Any) -> float:
     a = F.AWAY
     along = met[k, a] * met[g, a] + met[k, a + 1] * met[g, a + 1] + met[k, a + 2] * met[g, a + 2]
     one = max(0.5 + 0.5 * along, 0.0)
-    for _ in range(6):  # to the 64th power
+    for _ in range(DOUBLINGS):
         one *= one
     return LIKE_MOST * one
 
