@@ -136,7 +136,7 @@ def step_kernel(kind: str) -> Kernel:
     from ryusa.engine.cuda.step import make_step
 
     bodies, walls, pairs = groups()
-    arguments = (COUNT, COUNT, COUNT, F1, I1, bodies, walls, pairs, F2, F1)
+    arguments = (COUNT, COUNT, F1, I1, bodies, walls, pairs, F2, F1)
     return Kernel(
         f"step: {kind}", make_step(*KINDS[kind], ON_CARD), arguments, ON_CARD.threads,
         8 * ON_CARD.shared_doubles,
@@ -152,7 +152,7 @@ def other_kernels() -> Iterator[Kernel]:
 
     bodies, walls, pairs = groups()
     yield Kernel(
-        "close", make_close(ON_CARD), (COUNT, COUNT, COUNT, F1, F1, I1, F1, F2, F2), ON_CARD.closers,
+        "close", make_close(ON_CARD), (COUNT, COUNT, F1, F1, I1, F1, F2, F2), ON_CARD.closers,
         8 * ON_CARD.segments * T.N_COLUMN,
     )  # fmt: skip
     for name, arguments in (
@@ -171,6 +171,7 @@ def other_kernels() -> Iterator[Kernel]:
             "find_neighbours",
             (COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I4, I4, I4, I1, I4),
         ),
+        ("set_springs_in_touch", (COUNT, COUNT, COUNT, COUNT, F1, bodies, pairs)),
         ("transfer_memory", (*[COUNT] * 5, F1, I4, bodies, pairs, pairs, I1)),
         ("count_touching", (COUNT, I4, pairs, I1)),
         ("hold_touching", (COUNT, I4, pairs, pairs)),

@@ -49,7 +49,7 @@ def in_simulator(*words: str) -> subprocess.CompletedProcess[str]:
 @pytest.mark.full
 @pytest.mark.parametrize(
     "file, part",
-    [("test_engines.py", "frozen"), ("test_engines.py", "not frozen"), ("in_cuda_simulator.py", "test")],
+    [("test_engines.py", "frozen"), ("test_engines.py", "not frozen"), ("on_cuda.py", "test")],
 )
 def test_the_engine_does_in_the_simulator_what_every_engine_does(file: str, part: str) -> None:
     done = in_simulator("-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", part, str(HERE / file))
@@ -137,6 +137,20 @@ def test_occupancy_follows_from_registers_threads_and_shared_memory() -> None:
     assert Resources(129, 0, 0, 0, 128).occupancy(hopper) == (3, 0.1875)  # 136 registers are given
     assert Resources(255, 0, 0, 0, 128).occupancy(hopper) == (2, 0.125)
     assert Resources(32, 0, 0, 100_000, 128).occupancy(hopper) == (2, 0.125)  # two blocks' shared memory
+
+
+def test_a_numpy_that_numba_cuda_does_not_know_is_named_with_the_remedy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from ryusa.engine.cuda import availability
+
+    def fails(name: str) -> None:
+        raise AttributeError(f"module 'numpy' has no attribute 'row_stack', which {name} asks for")
+
+    monkeypatch.setattr(importlib.import_module("numba.cuda"), "gpus", [object()])
+    monkeypatch.setattr(availability, "import_module", fails)
+    reason = availability.unavailable()
+    assert "does not go with numpy" in reason and "row_stack" in reason and "'numpy<2.5'" in reason
 
 
 def test_without_a_gpu_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:

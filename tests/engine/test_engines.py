@@ -1,6 +1,7 @@
 """What every engine has to do, asked of each of them by its name; those that differ are held against the CPU.
 
-CUDA is among them where numba's simulator stands for a card: tests/engine/test_cuda.py runs this file so.
+CUDA is among them where there is a card, and alone where numba's simulator stands for one:
+tests/engine/test_cuda.py runs this file so.
 """
 
 import math
@@ -17,6 +18,7 @@ from tests.kernel_variants import full_but
 
 from ryusa.build import scene
 from ryusa.engine import registry
+from ryusa.engine.cuda.availability import unavailable
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.laws.families import ContactTiming
 from ryusa.model import EngineBlock, Term
@@ -32,6 +34,8 @@ SHOWN = ("exact timing, records", "exact timing, plane, may pull", "exact timing
 if os.environ.get("NUMBA_ENABLE_CUDASIM") == "1":
     ENGINES = {"cuda": ("cuda", {"skin": 0.03})}
     sys.setswitchinterval(2e-5)  # the simulator polls its threads: without this each wait costs 5 ms
+elif not unavailable():
+    ENGINES["cuda"] = ("cuda", {"skin": 0.03})
 
 
 @pytest.fixture(autouse=True)

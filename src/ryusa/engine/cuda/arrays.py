@@ -60,7 +60,7 @@ class DeviceWallArrays(NamedTuple):
     active: Any  # uint8, (n_plane,)
 
 
-MOST_BLOCKS = 4096  # beyond, a thread takes several grains
+MOST_BLOCKS = 528  # beyond, a thread takes several grains: twice what 132 multiprocessors hold (design/0009)
 
 
 class LaunchShape(NamedTuple):

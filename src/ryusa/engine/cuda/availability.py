@@ -1,5 +1,7 @@
 """Whether a CUDA device can be used here; asked before numba-cuda is loaded."""
 
+from importlib import import_module
+from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any
 
@@ -22,7 +24,17 @@ def unavailable() -> str:
         lines = [line.strip() for line in str(error).splitlines()]
         said = [line for line in lines if line and not line.endswith((":", "init"))]
         return f"no CUDA driver answers: {said[0].rstrip('.') if said else error}"
-    return "" if cards else "the CUDA driver finds no card"
+    return _unfit() if cards else "the CUDA driver finds no card"
+
+
+def _unfit() -> str:
+    """Why numba-cuda cannot compile with the NumPy that is here; nothing when it can."""
+    try:
+        import_module("numba.cuda.cudaimpl")  # what kernels are compiled from
+    except AttributeError as error:
+        mine, theirs = version("numba-cuda"), version("numpy")
+        return f"numba-cuda {mine} does not go with numpy {theirs} ({error}): pip install 'numpy<2.5'"
+    return ""
 
 
 def device_name() -> str:

@@ -11,6 +11,9 @@ from ryusa.laws import _family
 F = TypeVar("F", bound=Callable[..., Any])
 
 cuda: Any = import_module("numba.cuda")  # its own types do not know what a kernel may say
+if not simulated():  # few grains fill no card, and the user need not be told at each launch
+    settings: Any = import_module("numba.cuda.core.config")
+    settings.CUDA_LOW_OCCUPANCY_WARNINGS = 0
 
 
 def device(function: F) -> F:

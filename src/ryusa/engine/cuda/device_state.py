@@ -131,12 +131,23 @@ class DeviceState:
         )
         self._fixed = cuda.to_device(np.zeros(max(len(still), 1), np.int32))
         self._still = cuda.to_device(self.standing)
+        self._rooms = 0
         self.pairs = self._by_id(memory)
+        launch(
+            kernels.set_springs_in_touch, self.n, self.n, variant.rotation, variant.kind,
+            int(choice.rebound > 0), self.c, self.bodies, self.pairs,
+        )  # fmt: skip
         self._held = self._room(0, cuda.to_device(np.zeros(self.n + 1, np.int64)))
         self.n_pair = 0
 
+    @property
+    def arrays(self) -> tuple[int, int]:
+        """Tells the arrays in use from those of another list: how often room was made, and which order."""
+        return self._rooms, id(self.bodies)
+
     def _room(self, pairs: int, start: Any) -> DevicePairArrays:
         """A list with room for so many neighbours and an eighth more, undefined beyond `start`."""
+        self._rooms += 1
         room = max(pairs * 9 // 8, 1)
         return DevicePairArrays(
             start,

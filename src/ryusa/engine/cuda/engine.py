@@ -11,6 +11,7 @@ from ryusa.engine.cuda.arrays import RecordedGrains
 from ryusa.engine.cuda.device import cuda
 from ryusa.engine.cuda.device_state import DeviceState, blocks, shape
 from ryusa.engine.cuda.step import make_close, make_step
+from ryusa.engine.cuda.step_graph import STEPS, StepGraphs
 from ryusa.engine.cuda.step_totals import NO_GRAIN
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
@@ -115,6 +116,7 @@ class CudaEngine:
         placed = State(
             x=x, v=state.v, omega=state.omega, image=state.image, fluid=state.fluid, contacts=contacts
         )
+        self._graphs = StepGraphs()
         self._device = DeviceState(scene, placed, self._variant, self._choice, self._parameters, extent)
         self._status = np.zeros(F.N_STATUS, np.int64)
         self._status[F.STEP], self._status[F.OVERFLOWED] = state.step, NO_GRAIN
@@ -237,25 +239,20 @@ class CudaEngine:
 
     def _advance(self, n_steps: int) -> Flags:
         """Launch steps until they are done; a step that comes after a stop passes over itself."""
-        target, device = self._step + n_steps, self._device
-        n_block, cut = blocks(self._n), shape()
-        step = self._step_kernel[n_block, cut.threads, 0, 8 * cut.shared_doubles]
-        close = self._close_kernel[1, cut.closers, 0, 8 * cut.segments * T.N_COLUMN]
+        target = self._step + n_steps
+        self._status[F.TARGET] = target
+        self._d_status.copy_to_device(self._status)
         while self._step < target:
             if 2.0 * self._travel > self._skin:
                 fault = self._rebuild_list()
                 if fault is not None:
                     return Flags(fault)
             was = self._step
-            for _ in range(min(target - was, self._until_list())):
-                step(
-                    target, self._n, device.n_solid, device.c, self._d_status, device.bodies, device.walls,
-                    device.pairs, self._d_ended, self._d_partial,
-                )  # fmt: skip
-                close(
-                    target, n_block, self._room, device.c, self._d_partial, self._d_status, self._d_motion,
-                    self._d_terms, self._d_stats,
-                )  # fmt: skip
+            graphs, rest = divmod(min(target - was, self._until_list()), STEPS)
+            for _ in range(rest):
+                self._launch(0)
+            for _ in range(graphs):
+                self._graphs.launch(self._device.arrays, self._launch)
             self._download_status()
             self._since += self._step - was
             stop = int(self._status[F.STOP])
@@ -275,6 +272,18 @@ class CudaEngine:
                     )
                 )
         return Flags()
+
+    def _launch(self, stream: Any) -> None:
+        """Launch one step."""
+        device, n_block, cut = self._device, blocks(self._n), shape()
+        self._step_kernel[n_block, cut.threads, stream, 8 * cut.shared_doubles](
+            self._n, device.n_solid, device.c, self._d_status, device.bodies, device.walls, device.pairs,
+            self._d_ended, self._d_partial,
+        )  # fmt: skip
+        self._close_kernel[1, cut.closers, stream, 8 * cut.segments * T.N_COLUMN](
+            n_block, self._room, device.c, self._d_partial, self._d_status, self._d_motion, self._d_terms,
+            self._d_stats,
+        )  # fmt: skip
 
     def _until_list(self) -> int:
         """Steps to launch before the status is read: about as many as the list stays valid."""

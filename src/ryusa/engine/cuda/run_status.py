@@ -6,6 +6,7 @@ STEP = 1  # done since the start of the run
 CURRENT = 2  # half that holds now
 ENDED = 3  # records that wait to be fetched
 OVERFLOWED = 4  # lowest id of a grain whose record found no room
+TARGET = 5  # steps that will have been done when a call returns
 N_STATUS = 8
 
 # The same, doubles.

@@ -68,7 +68,6 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
 
     @cuda.jit
     def step(
-        target: int,
         n: int,
         n_solid: int,
         c: Any,
@@ -79,7 +78,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         ended: Any,
         partial: Any,
     ) -> None:
-        """Do one step, unless something waits for the host; step `target` - 1 is the last of a call."""
+        """Do one step, unless something waits for the host."""
         # One function: sums of a grain stay in its 209 to 255 registers (design/0009) from pair to pair
         if status[F.STOP] != STOP_DONE:
             return
@@ -90,7 +89,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         totals[T.OVERLAP_PARTNER], totals[T.NOT_FINITE] = NO_GRAIN, NO_GRAIN
         work = cuda.local.array(N_TERM, float64)
         half, at = status[F.CURRENT], status[F.STEP]
-        first, last = at == 0, at == target - 1
+        first, last = at == 0, at == status[F.TARGET] - 1
         dt = c[P.DT]
         l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
         t, hdt = c[P.T_ZERO] + at * dt, 0.0 if first else 0.5 * dt
@@ -267,7 +266,6 @@ def make_close(shape: LaunchShape) -> Any:
 
     @cuda.jit
     def close(
-        target: int,
         n_block: int,
         room: int,
         c: Any,
@@ -293,7 +291,7 @@ def make_close(shape: LaunchShape) -> Any:
             _reduce(column, 0, 0, segments, 1, shared_sums, shared_sums)
         cuda.syncthreads()
         if me == 0:
-            _enter_totals(target, shared_sums, status, terms[0], stats[0])
+            _enter_totals(shared_sums, status, terms[0], stats[0])
             _decide_stop(room, c, shared_sums, status, motion, stats[0])
 
     return close
@@ -329,7 +327,7 @@ def _reduce(column: int, to: int, begin: int, end: int, every: int, rows: Any, s
 
 
 @device
-def _enter_totals(target: int, sums: Any, status: Any, terms: Any, stats: Any) -> None:
+def _enter_totals(sums: Any, status: Any, terms: Any, stats: Any) -> None:
     """Enter what a step did: the half interval of water that waited, then its own works; and extremes."""
     _close_fluid_interval(terms, stats)
     for k in range(N_TERM):
@@ -338,7 +336,7 @@ def _enter_totals(target: int, sums: Any, status: Any, terms: Any, stats: Any) -
     stats[S.PENDING_LIFT], stats[S.PENDING_FLOW], stats[S.PENDING_FILM] = (
         sums[T.PENDING_LIFT], sums[T.PENDING_FLOW], sums[T.PENDING_FILM],
     )  # fmt: skip
-    if status[F.STEP] == target - 1:
+    if status[F.STEP] == status[F.TARGET] - 1:
         stats[S.KINETIC], stats[S.SPIN], stats[S.POTENTIAL] = sums[T.KINETIC], sums[T.SPIN], sums[T.POTENTIAL]
         stats[S.SPRING_N], stats[S.SPRING_S] = sums[T.SPRING_N], sums[T.SPRING_S]
         stats[S.SPRING_R], stats[S.N_CONTACT] = sums[T.SPRING_R], sums[T.N_CONTACT]

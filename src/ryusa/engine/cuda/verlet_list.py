@@ -256,6 +256,34 @@ def transfer_memory(
 
 
 @cuda.jit
+def set_springs_in_touch(
+    n: int,
+    rotation: int,
+    kind: int,
+    immersed: int,
+    c: Any,
+    bodies: DeviceGrainArrays,
+    pairs: DevicePairArrays,
+) -> None:
+    """Give pairs in contact, by ids, the springs that a card computes: a resumed run has the same bits so.
+
+    `immersed`: their normal springs were set when they touched, and stay.
+    """
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            j, eta_n, k_n = pairs.partners[k], pairs.eta[k, M.ETA_N], 0.0
+            if kind == M.OF_MAPS:
+                k_n = pairs.eta[k, M.K_N]
+            _set_springs(
+                k, min(i, j), max(i, j), rotation, kind, c, bodies.m, bodies.x[0], bodies.inertia, pairs.eta
+            )
+            if immersed:
+                pairs.eta[k, M.ETA_N] = eta_n
+                if kind == M.OF_MAPS:
+                    pairs.eta[k, M.K_N] = k_n
+
+
+@cuda.jit
 def count_touching(n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
     """Pairs in contact of which each grain has the lower id."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):

@@ -1,9 +1,8 @@
-"""The CUDA engine in numba's simulator, where threads are Python's: what is its own.
+"""What is the CUDA engine's own; what it shares with every engine is asked in test_engines.py.
 
-What it shares with every engine is asked in test_engines.py.
-
-Not collected by itself: tests/engine/test_cuda.py runs this file in a process with NUMBA_ENABLE_CUDASIM=1,
-which has to be said before numba is imported.
+Not collected by itself: tests/engine/test_cuda.py runs this file with numba's simulator, where threads are
+Python's, in a process with NUMBA_ENABLE_CUDASIM=1, which has to be said before numba is imported. On a card:
+`pytest tests/engine/on_cuda.py tests/engine/test_engines.py -k cuda`.
 """
 
 import os
