@@ -18,6 +18,7 @@ class LatticeCells:
     n_x: int  # cells along x
     n_y: int  # along y, 1 in a plane scene
     thickness: Floats | None = None  # of the block at each of n_x, relative, >= 0 [-]; None: even
+    only: NDArray[np.int64] | None = None  # numbers of the cells that may be filled, ascending; None: all
 
 
 def nested_lattice(
@@ -101,9 +102,15 @@ def filled_cells(n: int, cells: LatticeCells, rng: np.random.Generator) -> NDArr
 
     Raises
     ------
-    ValueError : the thickness is negative or 0 everywhere.
+    ValueError : the thickness is negative or 0 everywhere, or too few cells may be filled.
     """
     per_layer = cells.n_x * cells.n_y
+    if (only := cells.only) is not None:
+        if n > len(only):
+            raise ValueError(f"{n} cells are to be filled, and there are {len(only)}")
+        top = only // per_layer == (only[n - 1] // per_layer if n else -1)
+        below = only[:n][~top[:n]]
+        return np.concatenate([below, rng.permutation(only[top])[: n - len(below)]])
     if cells.thickness is None:
         full = n // per_layer * per_layer
         return np.concatenate([np.arange(full), full + rng.permutation(per_layer)[: n - full]])

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from ryusa.casefile.builders.checks import check_builder
+from ryusa.casefile.builders.checks import check_builder, check_fill
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import check_choices
 from ryusa.casefile.column.checks import check_column
@@ -55,6 +55,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         text = "needs [water.row], whose bottom is the floor of its grains; without it take another builder"
         return [*_rivals(case), CaseError("build.kind", "stream", text)]
     unsized = [*check_grading(case), *check_sizes(case), *check_shape(case), *check_reach(case)]
+    unsized = unsized or [*check_fill(case)]
     if unsized:  # most checks need the sizes
         return [*_rivals(case), *unsized]
     found = [

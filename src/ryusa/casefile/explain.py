@@ -1,5 +1,6 @@
 """A case explained: every number that follows from it, with its unit and its origin."""
 
+from ryusa.casefile.builders.rows import fill_rows
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.rows import column_rows, origin_of_u_star
 from ryusa.casefile.contact.impact import impact_rows
@@ -40,6 +41,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *damping_rows(case, found),
         *material_rows(case),
         *wall_rows(case, found),
+        *fill_rows(case),
         *time_rows(case, found),
         *impact_rows(case, found),
         *water_rows(case, found, origin_of_u_star(case) if case.water is not None else ""),

@@ -26,7 +26,7 @@ _FARTHEST = 1e12  # [m]
 Turn = tuple[tuple[float, float, float], float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """A mesh in its place.
 

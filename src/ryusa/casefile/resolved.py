@@ -50,6 +50,9 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     ):  # left out where there are none, as in cases of earlier versions
         if not data[key]:
             del data[key]
+    for key in ("inside", "number"):  # of builder "fill", so too
+        if key in data["build"] and data["build"][key] is None:
+            del data["build"][key]
     data["derived"] = asdict(found)
     return _plain(data)
 

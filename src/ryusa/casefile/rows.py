@@ -39,6 +39,7 @@ def count(section: str, name: str, value: int, origin: str, flag: Flag = "") -> 
 
 _SI = {  # unit printed: (SI unit of the value, unit for the formatter)
     "cm": ("m", "cm"),
+    "cm3": ("m3", "cm3"),
     "N/cm": ("N/m", "N/cm"),
     "N s/cm": ("N s/m", "N s/cm"),
     "deg": ("rad", "deg"),

@@ -118,7 +118,7 @@ class ClosedMesh:
     def distance(self, x: Floats) -> float:
         """Distance of a point from the surface [m]; `x` has shape (3,)."""
         a, b, c = self.corners.transpose(1, 0, 2)
-        return float(np.sqrt(_square_distances(x, a, b, c).min()))
+        return float(np.sqrt(square_distances(x, a, b, c).min()))
 
 
 def _numbered(corners: Floats) -> Ints:
@@ -184,8 +184,8 @@ def _crossings(corners: Floats, shape: Ints) -> list[tuple[Ints, Ints, int]]:
     return found
 
 
-def _square_distances(x: Floats, a: Floats, b: Floats, c: Floats) -> Floats:
-    """Squares of the distances of a point from triangles of corners a, b, c [m2], shape (n,).
+def square_distances(x: Floats, a: Floats, b: Floats, c: Floats) -> Floats:
+    """Squares of the distances of a point, or of points, from triangles of corners a, b, c [m2], shape (n,).
 
     Nearest to a triangle is the foot of the perpendicular where it lies inside, else a point of a side.
     """

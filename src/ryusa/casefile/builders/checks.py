@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.box import hole
+from ryusa.casefile.builders.inside import enclosure_of
 from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
@@ -17,8 +18,12 @@ from ryusa.casefile.builders.values import (
     FEWEST_PERIODS,
     bed_opening,
     counts,
+    fill_box,
+    fill_inside,
+    fill_most,
     flume_count,
     periodic,
+    room,
     sizes,
 )
 from ryusa.casefile.column.bed import bed_thickness
@@ -27,6 +32,7 @@ from ryusa.casefile.grains import graded, spread_of
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
+from ryusa.model.enclosure import MeshInside
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -84,21 +90,73 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _fill(case, build)
 
 
+def check_fill(case: "Case") -> Iterator[CaseError]:
+    """Find a builder 'fill' that does not say where its grains go; most checks need their number."""
+    build = case.build
+    if not isinstance(build, FillSection):
+        return
+    if build.inside is None:
+        if build.low is None or build.high is None:
+            key = "build.low" if build.low is None else "build.high"
+            yield CaseError(key, None, "missing; give low and high, or inside with the name of a wall")
+        return
+    for key in ("low", "high"):
+        if given(build, key):
+            yield CaseError(f"build.{key}", None, "excludes build.inside; give only one of the two")
+    if build.periodic:
+        yield CaseError("build.periodic", True, "needs build.low and build.high, the period")
+    if case.motion.plane:
+        yield CaseError("build.inside", build.inside, "needs motion.plane = false, as [[walls]] do")
+        return
+    try:
+        fill_inside(case)
+    except CaseError as error:
+        yield error
+
+
 def _fill(case: "Case", build: FillSection) -> Iterator[CaseError]:
-    if any(a >= b for a, b in zip(build.low, build.high, strict=True)):
-        yield CaseError("build.low", list(build.low), "must lie below build.high in every direction")
+    most = fill_most(case)
+    if build.number is not None and build.most is not None:
+        yield CaseError("build.number", build.number, "excludes build.most; give only one of the two")
+    elif build.number is not None and 0 < most < build.number:
+        what, where = ("box", "the box") if build.inside is None else ("wall", f"'{build.inside}'")
+        yield CaseError(
+            "build.number", build.number, f"do not fit: {where} holds {most:,}; ask for no more, or take "
+            f"smaller grains, a smaller build.gap or a larger {what}"
+        )  # fmt: skip
+    if build.inside is not None:
+        if most < 1:
+            yield _empty(case, build)
+        return
+    low, high = fill_box(build)
+    if any(a >= b for a, b in zip(low, high, strict=True)):
+        yield CaseError("build.low", list(low), "must lie below build.high in every direction")
     elif counts(case)[0] < 1:
         least = sizes(case)[2] * (1.0 + build.gap)
-        yield CaseError(
-            "build.high", list(build.high), f"holds no grain: a grain needs {least:.4g} m each way"
-        )
+        yield CaseError("build.high", list(high), f"holds no grain: a grain needs {least:.4g} m each way")
     if build.periodic and build.plate is not None:
         yield CaseError("build.plate", build.plate, "cannot be in a periodic box: a plate is round")
     for k, one in enumerate(periodic(case)):
         least = FEWEST_PERIODS * sizes(case)[2]
-        if one and build.high[k] - build.low[k] < least:
+        if one and high[k] - low[k] < least:
             text = f"must be at least {least:.4g} m above build.low in {'xy'[k]}, which is periodic"
-            yield CaseError("build.high", list(build.high), text)
+            yield CaseError("build.high", list(high), text)
+
+
+def _empty(case: "Case", build: FillSection) -> CaseError:
+    """A wall that holds no grain, and why it may be."""
+    enclosure, least = enclosure_of(case), room(case) * (1.0 + build.gap)
+    across = " x ".join(f"{one:.3g}" for one in enclosure.high - enclosure.low)
+    whole = ", the cell of a sieve curve as a whole" if graded(case) else ""
+    text = (
+        f"holds no grain: it is {across} m, and one needs {least:.4g} m each way{whole}; take smaller grains"
+    )
+    if isinstance(enclosure, MeshInside) and min(enclosure.high - enclosure.low) > least:
+        text += (
+            " or, where this is a vessel with thick walls, which are then what is inside, a mesh of its "
+            "inner surface, or build.low and build.high"
+        )
+    return CaseError("build.inside", build.inside, text)
 
 
 def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from ryusa.casefile.files import RelativePath
-from ryusa.casefile.quantities import Count, Length, Moment, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.row.schema import LineFile, LinePoints
 from ryusa.casefile.section import Section
 from ryusa.units import quantity
@@ -227,16 +227,22 @@ class EmptySection(Section):
 
 
 class FillSection(Section):
-    """Grains in a box of space, to fall between [[walls]] and [[planes]] of the case."""
+    """Grains in a box of space, or inside a wall, to fall between [[walls]] and [[planes]] of the case."""
 
     kind: Literal["fill"]
     """Name of the builder."""
-    low: Point
+    low: Point | None = None
     """Lower corner of the box that the grains fill at the start."""
-    high: Point
+    high: Point | None = None
     """Upper corner of the box."""
+    inside: Name | None = None
+    """Name of a wall that the grains fill instead of a box, where it is at the start: a cylinder, between its
+    ends, or a mesh that is closed or whose openings have flat rims, which count as closed by lids. Whole
+    grains lie inside."""
     most: Annotated[Count, Field(ge=1, le=20_000_000)] | None = None
-    """Most grains, the lowest ones; as many as the box holds when not given."""
+    """Most grains, the lowest ones; as many as the box or the wall holds when not given."""
+    number: Annotated[Count, Field(ge=1, le=20_000_000)] | None = None
+    """Number of grains, the lowest ones; it is an error if fewer fit."""
     plate: PositiveLength | None = None
     """Radius of a round plate of touching fixed grains of mean diameter, as of builder "empty"."""
     periodic: bool = False

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.casefile.builders.box import box_plan
+from ryusa.casefile.builders.inside import CellsInside, cells_inside, enclosure_of
 from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
@@ -37,6 +38,7 @@ PLATE_COUNTED = 1e4  # radius of a plate in diameters up to which its grains are
 DEEPEST = 20  # halvings of a cell; a grain a millionth as large as its cell loses nothing more
 _ROUNDED = 4.0  # cells of the lattice of builder 'fill'
 
+Corner = tuple[float, float, float]
 
 def sizes(case: "Case") -> tuple[float, float, float]:
     """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
@@ -212,19 +214,41 @@ def flume_count(case: "Case") -> int:
 
 
 def fill_cells(case: "Case") -> tuple[int, int, int]:
-    """Cells of the lattice in the box of builder 'fill' along x, y and z."""
+    """Cells of the lattice of builder 'fill' along x, y and z, in its box or round its wall."""
     build = case.build
     assert isinstance(build, FillSection)
     pitch = room(case) * (1.0 + build.gap)
+    if build.inside is not None:
+        return fill_inside(case).grid.shape
     x, y, z = (
-        max(int((high - low) / pitch * (1.0 + 1e-9)), 0)
-        for low, high in zip(build.low, build.high, strict=True)
+        max(int((high - low) / pitch * (1.0 + 1e-9)), 0) for low, high in zip(*fill_box(build), strict=True)
     )
     return x, 1 if case.motion.plane else y, z
 
 
 def fill_count(case: "Case") -> int:
-    """Free grains of builder 'fill'; of several sizes as many as its cells hold, halved for smaller ones.
+def fill_box(build: FillSection) -> tuple[Corner, Corner]:
+    """Lower and upper corner of the box of builder 'fill' [m]."""
+    assert build.low is not None and build.high is not None
+    return build.low, build.high
+
+
+def fill_inside(case: "Case") -> CellsInside:
+    """Cells of builder 'fill' in the wall that it names; of a sieve curve, those that lie inside wholly."""
+    build = case.build
+    assert isinstance(build, FillSection)
+    pitch = room(case) * (1.0 + build.gap)
+    return cells_inside(enclosure_of(case), pitch, room(case), graded(case))
+
+
+    """Free grains of builder 'fill': as many as fit, or fewer if asked for."""
+    build, held = case.build, fill_most(case)
+    assert isinstance(build, FillSection)
+    return min(held, build.number or build.most or held)
+
+
+def fill_most(case: "Case") -> int:
+    """Grains that builder 'fill' can lay; of several sizes what its cells hold, halved for smaller ones.
 
     Notes
     -----
@@ -232,14 +256,15 @@ def fill_count(case: "Case") -> int:
     up to two grains from the share of a level, and the grains of a level are rounded up to a whole cell of
     the next: together less than `_ROUNDED` cells for each material.
     """
-    build, cells = case.build, math.prod(fill_cells(case))
+    build = case.build
     assert isinstance(build, FillSection)
-    held = cells
-    if graded(case):
-        laid = laid_shares(case)
-        each = sum(share * _cells_of_a_grain(case, name) for name, share in laid.items())
-        held = max(cells, int((cells - _ROUNDED * len(laid)) / each))
-    return min(held, build.most or held)
+    inside = build.inside is not None
+    cells = len(fill_inside(case).numbers) if inside else math.prod(fill_cells(case))
+    if not graded(case):
+        return cells
+    laid = laid_shares(case)
+    each = sum(share * _cells_of_a_grain(case, name) for name, share in laid.items())
+    return max(cells, int((cells - _ROUNDED * len(laid)) / each))
 
 
 def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.int64], int]:
@@ -301,7 +326,8 @@ def bed_area(case: "Case") -> float:
         pitch = room(case) * (1.0 + build.gap)
         return build.columns * pitch * (slab if case.motion.plane else build.rows * pitch)
     if isinstance(build, FillSection) and build.periodic:
-        x, y = build.high[0] - build.low[0], build.high[1] - build.low[1]
+        low, high = fill_box(build)
+        x, y = high[0] - low[0], high[1] - low[1]
         return x * (slab if case.motion.plane else y)
     return math.nan
 
