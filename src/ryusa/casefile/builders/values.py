@@ -37,8 +37,8 @@ FEWEST_PERIODS = 3  # largest diameters that a period must hold
 PLATE_COUNTED = 1e4  # radius of a plate in diameters up to which its grains are counted one by one
 DEEPEST = 20  # halvings of a cell; a grain a millionth as large as its cell loses nothing more
 _ROUNDED = 4.0  # cells of the lattice of builder 'fill'
-
 Corner = tuple[float, float, float]
+
 
 def sizes(case: "Case") -> tuple[float, float, float]:
     """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
@@ -217,16 +217,15 @@ def fill_cells(case: "Case") -> tuple[int, int, int]:
     """Cells of the lattice of builder 'fill' along x, y and z, in its box or round its wall."""
     build = case.build
     assert isinstance(build, FillSection)
-    pitch = room(case) * (1.0 + build.gap)
     if build.inside is not None:
         return fill_inside(case).grid.shape
+    pitch = room(case) * (1.0 + build.gap)
     x, y, z = (
         max(int((high - low) / pitch * (1.0 + 1e-9)), 0) for low, high in zip(*fill_box(build), strict=True)
     )
     return x, 1 if case.motion.plane else y, z
 
 
-def fill_count(case: "Case") -> int:
 def fill_box(build: FillSection) -> tuple[Corner, Corner]:
     """Lower and upper corner of the box of builder 'fill' [m]."""
     assert build.low is not None and build.high is not None
@@ -241,6 +240,7 @@ def fill_inside(case: "Case") -> CellsInside:
     return cells_inside(enclosure_of(case), pitch, room(case), graded(case))
 
 
+def fill_count(case: "Case") -> int:
     """Free grains of builder 'fill': as many as fit, or fewer if asked for."""
     build, held = case.build, fill_most(case)
     assert isinstance(build, FillSection)
