@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.build.assemble import gravity
 from ryusa.casefile.case import Case
 from ryusa.casefile.record import ChangeSection
-from ryusa.casefile.row.values import per_width
+from ryusa.casefile.row.ends import per_width
 from ryusa.casefile.walls import MoveSection
 from ryusa.errors import CaseError
 from ryusa.model import Scene
@@ -38,6 +38,11 @@ def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
         assert row.upstream is not None
         end = replace(row.upstream, discharge=per_width(case, entry.discharge))
         return replace(scene, row=replace(row, upstream=end))
+    if entry.level is not None:
+        row = scene.row
+        assert row is not None
+        assert row.downstream is not None
+        return replace(scene, row=replace(row, downstream=replace(row.downstream, level=entry.level)))
     if entry.friction is not None or entry.friction_angle is not None:
         mu = entry.friction if entry.friction is not None else math.tan(entry.friction_angle or 0.0)
         return replace(scene, contact=replace(scene.contact, mu=mu))

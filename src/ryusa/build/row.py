@@ -15,19 +15,11 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.ends import discharge_of, hydrograph_of, levels_of, stage_of, width_of
 from ryusa.casefile.row.reach import END
 from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import RowEndSection, row_keys
-from ryusa.casefile.row.values import (
-    RowPlan,
-    crest_of,
-    dam_span,
-    discharge_of,
-    row_plan,
-    segments_of,
-    stream,
-    width_of,
-)
+from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, row_plan, segments_of, stream
 from ryusa.errors import CaseError
 from ryusa.laws.families import (
     BedKind,
@@ -136,9 +128,13 @@ def _end(case: Case, end: RowEndSection | None) -> RowEnd | None:
         return reach_end(case, reach)
     kind = _KINDS[end.end]
     if kind is not EndKind.DISCHARGE:
-        return RowEnd(kind, level=math.nan if end.level is None else end.level)
+        course = stage_of(case) if end.stage is not None else None
+        return RowEnd(kind, level=next(iter(levels_of(case, end)), math.nan), course=course)
     depth = math.nan if end.depth is None else end.depth
-    return RowEnd(kind, discharge=discharge_of(case), depth=depth, developed=end.profile == "developed")
+    return RowEnd(
+        kind, discharge=discharge_of(case), depth=depth, developed=end.profile == "developed",
+        course=hydrograph_of(case),
+    )  # fmt: skip
 
 
 def _dams(case: Case, plan: RowPlan) -> tuple[np.ndarray | None, PorousSolid | None, tuple[RowDam, ...]]:

@@ -17,8 +17,9 @@ from ryusa.casefile.builders.values import stream_cells, stream_count, stream_th
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grains import graded
+from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import bottom_points, crest_of, dam_span, row_plan, stream, width_of
+from ryusa.casefile.row.values import bottom_points, crest_of, dam_span, row_plan, stream
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 

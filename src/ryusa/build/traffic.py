@@ -15,7 +15,7 @@ from ryusa.casefile.grains import mass, sized_as
 from ryusa.casefile.materials import of_material
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
-from ryusa.casefile.traffic.values import fed_count, feed_end
+from ryusa.casefile.traffic.values import fed_amount, fed_count, feed_begin, feed_end, sedigraph_of, unit_of
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic
 from ryusa.model.scene import Floats
@@ -115,9 +115,9 @@ def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats
     count = fed_count(case, keys)
     sized = sized_as(case, keys.material)
     d = draw(sized, count, rng)
-    if keys.rate is None or keys.rate[1] == "grains/s":
+    if unit_of(case, keys) != "kg/s":
         return d
-    wanted = keys.rate[0] * (feed_end(case, keys) - keys.begin)
+    wanted = fed_amount(case, keys)
     while True:
         m = np.array([mass(of_material(case, keys.material), one)[0] for one in d.tolist()])
         due = np.concatenate([[0.0], np.cumsum(m)])  # mass before each grain
@@ -144,11 +144,13 @@ def _unit(normal: tuple[float, float, float]) -> tuple[float, float, float]:
 
 
 def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed:
-    rate, unit = keys.rate if keys.rate is not None else (0.0, "grains/s")
+    course = sedigraph_of(case, keys)
+    rate = max(course.y) if course is not None else 0.0 if keys.rate is None else keys.rate[0]
     common = Feed(
-        keys.name, velocity=keys.velocity, rate=rate, by_mass=unit == "kg/s", begin=keys.begin,
-        end=feed_end(case, keys), first=first, count=count, seed=seed_of_feed(case.seed, k),
-        wall=_wall(case, keys),
+        keys.name, velocity=keys.velocity, rate=rate, by_mass=unit_of(case, keys) == "kg/s",
+        begin=feed_begin(case, keys), end=feed_end(case, keys), first=first, count=count,
+        seed=seed_of_feed(case.seed, k), wall=_wall(case, keys),
+        times=() if course is None else course.t, rates=() if course is None else course.y,
     )  # fmt: skip
     if keys.low is not None and keys.high is not None:
         return replace(common, low=keys.low, high=keys.high)

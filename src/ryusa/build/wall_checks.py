@@ -9,7 +9,14 @@ from ryusa.build.change import change, replay
 from ryusa.build.servo import area_along
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.impact import STABLE
-from ryusa.casefile.traffic.values import FULLEST, FULLEST_PLANE, grains_per_second, share_filled
+from ryusa.casefile.traffic.values import (
+    FULLEST,
+    FULLEST_PLANE,
+    grains_per_second,
+    mean_mass,
+    share_filled,
+    unit_of,
+)
 from ryusa.errors import CaseError
 from ryusa.model import FaceKind, Feed, Scene, State
 from ryusa.model.arrays import Bools, Floats
@@ -198,10 +205,11 @@ def refuse_full_feeds(case: Case, scene: Scene) -> None:
         keys = case.feeds[k]
         share = share_filled(case, keys, grains_per_second(case, keys)) / free
         fullest = FULLEST_PLANE if scene.plane_case else FULLEST
-        if share > fullest and keys.rate is not None:
-            rate, unit = keys.rate
+        if share > fullest and keys.brings:
+            each = mean_mass(case, keys.material) if unit_of(case, keys) == "kg/s" else 1.0
+            rate, unit = grains_per_second(case, keys) * each, unit_of(case, keys)
             raise CaseError(
-                f"feeds.{k}.rate", f"{rate:g} {unit}",
+                f"feeds.{k}.{'rate' if keys.sedigraph is None else 'sedigraph'}", f"{rate:g} {unit}",
                 f"cannot fit: {most} leaves {free:.2g} of the room at the feed, of which grains would fill "
                 f"{share:.2g}, and at most {fullest:g} can be filled at random; lower it below "
                 f"{rate * fullest / share:.3g} {unit}, or move the feed",

@@ -13,6 +13,7 @@ from ryusa.casefile.quantities import (
     Duration,
     FrictionAngle,
     FrictionCoefficient,
+    Length,
     Moment,
     Slope,
     SlopeAngle,
@@ -30,7 +31,9 @@ if TYPE_CHECKING:
 
 LONG = 5.0e-3  # [s] that no contact of grains lasts
 MANY = 1000  # free grains above which contacts are recorded only on request
-CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move", "discharge")
+CHANGES = (
+    "remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move", "discharge", "level",
+)  # fmt: skip
 
 
 class RestSection(Section):
@@ -76,8 +79,10 @@ class ChangeSection(Section):
     move: MoveSection | None = None
     """Give a wall another motion."""
     discharge: RowDischarge | None = None
-    """New discharge at the upper end of a row of columns, per width or of the whole width; several make a
-    hydrograph in steps."""
+    """New discharge at the upper end of a row of columns, per width or of the whole width; one that rises and
+    falls is water.row.upstream.hydrograph."""
+    level: Length | None = None
+    """New height of the surface beyond the lower end of a row of columns, end = "level"."""
 
 
 class RecordSection(Section):

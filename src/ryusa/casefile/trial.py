@@ -1,10 +1,14 @@
 """A case cut short, to see whether it does what was meant: all its times shrink together."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.read import read
+from ryusa.casefile.row.ends import HYDROGRAPH, STAGE, hydrograph_points, stage_points
+from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.traffic.values import sedigraph_points
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
 
@@ -45,7 +49,28 @@ def read_shortened(path: str | Path, overrides: dict[str, str], time: str) -> "C
     }
     times |= {f"timeline.{k}.at": one.at * share for k, one in enumerate(whole.timeline)}
     for k, feed in enumerate(whole.feeds):
-        times[f"feeds.{k}.begin"] = feed.begin * share
+        if feed.sedigraph is None:
+            times[f"feeds.{k}.begin"] = feed.begin * share
         if feed.end is not None:
             times[f"feeds.{k}.end"] = feed.end * share
-    return read(path, overrides | {key: f"'{one:.12g} s'" for key, one in times.items()})
+    shorter = {key: f"'{one:.12g} s'" for key, one in times.items()}
+    return read(path, overrides | shorter | _courses(whole, share))
+
+
+def _courses(whole: "Case", share: float) -> dict[str, str]:
+    """Hydrograph, stage and sedigraphs whose times shrink, too, as points."""
+    found: dict[str, str] = {}
+    keys = row_keys(whole)
+    if keys is not None and keys.upstream is not None and keys.upstream.hydrograph is not None:
+        found[HYDROGRAPH] = _points(hydrograph_points(whole, keys.upstream.hydrograph), share)
+    if keys is not None and keys.downstream is not None and keys.downstream.stage is not None:
+        points = stage_points(whole, keys.downstream.stage)
+        found[STAGE] = _points([(t, (z, "m")) for t, z in points], share)
+    for k, feed in enumerate(whole.feeds):
+        if feed.sedigraph is not None:
+            found[f"feeds.{k}.sedigraph"] = _points(sedigraph_points(whole, feed), share)
+    return found
+
+
+def _points(points: Sequence[tuple[float, tuple[float, str]]], share: float) -> str:
+    return "[" + ", ".join(f"['{t * share:.12g} s', '{y!r} {unit}']" for t, (y, unit) in points) + "]"

@@ -11,6 +11,7 @@ from ryusa.laws.families import Buoyancy, Drive, SurfaceRule
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
+from ryusa.model.course import Course
 from ryusa.model.eddies import Eddies
 from ryusa.model.row_energy import N_ROW_TERM
 
@@ -43,6 +44,7 @@ class RowEnd:
     profile: Floats | None = None  # its speeds to any scale, shape (n,); None: uniform
     depth: float = NAN  # of the entering water [m], where it is faster than waves; nan: that of the row
     developed: bool = False  # profile, and the depth of a flow faster than waves, of steady flow
+    course: Course | None = None  # of level or discharge over time; the two above are those at the start
 
 
 @dataclass(frozen=True)

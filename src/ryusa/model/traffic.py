@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.model.arrays import Floats
+from ryusa.model.course import Course
 
 Vector = tuple[float, float, float]
 NAN = math.nan
@@ -60,13 +61,14 @@ class Feed:
     centre, normal, radius : of a disc [m]; nan for a box. `normal` has length 1.
     velocity : of every grain that enters [m/s]; of a feeder reach, that of its fastest grain.
     rate : grains or kilograms in a second; 0 where only grains that have left come in; of a feeder reach,
-        the mean.
+        the mean; of a sedigraph, the largest.
     by_mass : whether `rate` is in kg/s.
     begin, end : when grains of its own are due [s].
     first, count : ids of its own grains, first to first + count - 1, in the order in which they are due.
     seed : of the places drawn.
     wall : number of the wall with which it moves; NONE where it stays. Place, normal and velocity are
         those in the frame of the wall.
+    times, rates : of a sedigraph, straight between them; empty where the rate stays.
     """
 
     name: str
@@ -84,6 +86,8 @@ class Feed:
     count: int = 0
     seed: int = 0
     wall: int = NONE
+    times: tuple[float, ...] = ()
+    rates: tuple[float, ...] = ()
 
     @property
     def is_box(self) -> bool:
@@ -102,6 +106,9 @@ class Feed:
         """
         own = m[self.first : self.first + self.count] if self.by_mass else np.ones(self.count)
         before = np.concatenate([[0.0], np.cumsum(own)[:-1]]) if self.count else np.zeros(0)
+        if self.times:
+            course = Course(self.times, self.rates)
+            return np.array([course.when(one) for one in before.tolist()])
         return self.begin + before / self.rate if self.count else before
 
 

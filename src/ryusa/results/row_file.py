@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.model.column import Column
+from ryusa.model.course import Course
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowDam, RowEnd
 
 ROW = "row"  # group of the datasets, and key among the scalars
@@ -20,6 +21,8 @@ def row_scalars(row: ColumnRow) -> dict[str, Any]:
     for end in ends.values():
         if end is not None:
             del end["profile"]  # a dataset
+            if end["course"] is None:
+                del end["course"]
     return {
         "column": asdict(row.column), "dx": row.dx, "g_z": row.g_z, "x_low": row.x_low, **ends,
         "dams": [asdict(one) for one in row.dams],
@@ -83,4 +86,10 @@ def row_from(scalars: dict[str, Any], arrays: dict[str, np.ndarray], column: Col
 
 def _end(raw: dict[str, Any], profile: np.ndarray | None) -> RowEnd:
     numbers = {name: float(raw[name]) for name in ("level", "discharge", "depth")}
-    return RowEnd(EndKind(int(raw["kind"])), profile=profile, developed=bool(raw["developed"]), **numbers)
+    course = None
+    if (given := raw.get("course")) is not None:
+        t, y = (tuple(map(float, given[name])) for name in ("t", "y"))
+        course = Course(t, y)
+    return RowEnd(
+        EndKind(int(raw["kind"])), profile=profile, developed=bool(raw["developed"]), course=course, **numbers
+    )

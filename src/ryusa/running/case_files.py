@@ -23,6 +23,7 @@ def files_beside(case: "Case") -> dict[str, Path]:
         names += clump_files(case)
         names += [wall.file for wall in case.walls if wall.file is not None]
         names += line_files(case)
+        names += [feed.sedigraph for feed in case.feeds if isinstance(feed.sedigraph, str)]
         folder = case.path.resolve().parent
         found = {name: folder / name for name in names if _plain(name)}
     return found if sieve is None else found | {schema.SIEVE: sieve}

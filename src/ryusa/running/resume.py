@@ -143,7 +143,8 @@ def find_resume_point(
 def _other_feeds(scene: Scene, case: Mapping[str, Any]) -> list[str]:
     """Feeds whose grains were drawn for another end than that of a case, as case.json holds it."""
     stop = (case.get("stop") or {}).get("time")
-    ends = {one["name"]: (one.get("end"), stop) for one in case.get("feeds") or () if one.get("rate")}
+    own = [one for one in case.get("feeds") or () if one.get("rate") or one.get("sedigraph")]
+    ends = {one["name"]: (one.get("end"), stop) for one in own}
     row = (case.get("water") or {}).get("row") or {}
     if (row.get("upstream") or {}).get("end") == END:
         ends[NAME] = (None, stop)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
 from ryusa.model import CouplingState, RowCouplingState, Scene, State
+from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water.coupling import Coupling
 from ryusa.water.processes import SharingProcesses
@@ -87,11 +88,14 @@ def advanced(engine: Engine, water: RunWater | None, step: int, n_steps: int) ->
 
 
 def finish_before(engine: Engine, water: RunWater, step: int, after: Scene) -> None:
-    """End the interval of a row before another discharge enters it, so that each acts in its own time."""
-    if not isinstance(water, RowCoupling) or after.row is None:
+    """End the interval of a row before its discharge or level changes, so that each acts in its own time."""
+    before = water.scene.row
+    if not isinstance(water, RowCoupling) or before is None or after.row is None:
         return
-    ends = water.scene.row.upstream if water.scene.row is not None else None, after.row.upstream
-    if ends[0] is not None and ends[1] is not None and ends[0].discharge != ends[1].discharge:
+    ends, below = (before.upstream, after.row.upstream), (before.downstream, after.row.downstream)
+    if (ends[0] and ends[1] and ends[0].discharge != ends[1].discharge) or (
+        below[0] and below[1] and below[0].kind is EndKind.LEVEL and below[0].level != below[1].level
+    ):
         water.finish(step, *engine.kinematics())
         engine.set_fluid(water.sampled)
 

@@ -7,20 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import GrainLost
-from ryusa.laws.families import BedKind, Drive, Mixing, Start
+from ryusa.laws.families import BedKind, Mixing, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
-from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
 from ryusa.water.coupling import steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
+from ryusa.water.row_ends import EndsOverTime, with_inlet
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_inlet import bed_thickness
+from ryusa.water.row_step import RowEnds
 from ryusa.water.row_threads import RowThreads
-from ryusa.water.steady import steady
 
 _SETTLED = 0.7  # of the packed concentration; a bed with less is as it was laid, and settles
 _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
@@ -57,6 +57,7 @@ class RowCoupling:
 
     def __post_init__(self) -> None:
         self._arrays = RowArrays.of(self.row) if self.grains is None else None
+        self._courses = None if self.scene.row is None else EndsOverTime.of(self.scene.row)
 
     @staticmethod
     def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0, threads: int = 1) -> "RowCoupling":
@@ -110,6 +111,7 @@ class RowCoupling:
     def change(self, scene: Scene, row: ColumnRow) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         self.scene, self.row = scene, with_inlet(row)
+        self._courses = EndsOverTime.of(row)
         if self.grains is None:
             self._arrays = RowArrays.of(self.row)
         else:
@@ -125,6 +127,8 @@ class RowCoupling:
         WaterError : the water cannot be moved on, with the place; or drag acts faster than a step resolves.
         """
         time, grains, before = self.steps * self.scene.dt, self.grains, self.state.passed
+        if self._courses is not None:
+            self._follow(self._courses.over(self.state.t, self.state.t + time))
         if self.scene.traffic is None:
             self.refuse_lost(x, np.arange(len(x)), self.due, self.state.t + time)
         if grains is None:
@@ -139,6 +143,13 @@ class RowCoupling:
         self.worst = max(self.worst, _residual(self.state.budgets))
         self.due += self.steps
         return self.sampled
+
+    def _follow(self, ends: RowEnds) -> None:
+        """Let other discharges and levels act at the ends."""
+        if self._arrays is not None:
+            self._arrays = replace(self._arrays, ends=ends)
+        elif self.grains is not None:
+            self.grains.follow(ends)
 
     def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
         """End the interval before the next exchange is due; parameters as of `Coupling.finish`."""
@@ -285,62 +296,6 @@ class RowCoupling:
             if lower.mean() < 0.5 * math.sqrt(row.g_z * p.d):
                 found.append(float(averaged(p.dz, p.d, p.n - 1, phi).max()))
         return np.array(found)
-
-
-def with_inlet(row: ColumnRow) -> ColumnRow:
-    """The row with depth and profile of its inlet as steady flow over the bottom there has them.
-
-    Notes
-    -----
-    Where the bottom falls and normal flow is faster than waves, water enters at normal depth unless a depth
-    is given; else the row finds the depth. A developed profile is that of steady flow as deep as this, as
-    normal flow, or as the row at its start. Depth and profile count from the bed of grains where one lies.
-    """
-    end = row.upstream
-    if end is None or end.kind is not EndKind.DISCHARGE or end.discharge == 0.0:
-        return row
-    if not end.developed and (end.profile is not None or not np.isnan(end.depth)):
-        return row
-    b = row.bottom_with_ends()
-    tilt = (b[1] - b[0]) / row.dx  # the bottom falls where it is negative
-    along = (row.column.g_x - row.g_z * tilt) / np.hypot(1.0, tilt)
-    normal = _normal_depth(row, float(along), end.discharge)
-    depth = end.depth
-    if np.isnan(depth) and end.discharge > normal * np.sqrt(row.g_z * normal):
-        depth = normal * np.hypot(1.0, tilt)  # normal to the x axis
-    if not end.developed:
-        return replace(row, upstream=replace(end, depth=float(depth)))
-    assert row.start is not None
-    first = float(row.start[0] - row.bottom[0])
-    there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))
-    flow, _ = steady(
-        replace(row.column, g_x=0.0, depth=there, drive=Drive.DISCHARGE, discharge=end.discharge)
-    )
-    profile = np.array(flow.u)
-    return replace(row, upstream=replace(end, depth=float(depth), profile=profile, developed=False))
-
-
-def _normal_depth(row: ColumnRow, along: float, q: float) -> float:
-    """Depth of uniform flow by the column itself [m]; nan where there is none in the cells."""
-    if not along > 0.0:
-        return float("nan")
-    column, low, high = replace(row.column, g_x=along), 1.01 * row.column.dz, _room(row)
-
-    def passes(depth: float) -> float:
-        flow, _ = steady(replace(column, depth=depth))
-        return float(flow.content @ flow.u)
-
-    if not passes(low) < q < passes(high):
-        return float("nan")
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if passes(middle) < q else (low, middle)
-    return 0.5 * (low + high)
-
-
-def _room(row: ColumnRow) -> float:
-    """Largest depth that the cells hold [m]."""
-    return row.column.n * row.column.dz
 
 
 def _depths(row: ColumnRow, state: RowState) -> Floats:

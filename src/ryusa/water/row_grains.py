@@ -39,7 +39,7 @@ from ryusa.water.row_exchange import (
 )
 from ryusa.water.row_grain_sums import MetByGrains, sum_grains_in_row
 from ryusa.water.row_station import largest_residual
-from ryusa.water.row_step import RowWater
+from ryusa.water.row_step import RowEnds, RowWater
 from ryusa.water.row_sums import (
     N_ROW_SUM,
     GrainPlaces,
@@ -175,6 +175,10 @@ class GrainsInRow:
         for one in kept:
             one.flags.writeable = False
         return RowGrainState(*kept, self.eddies)
+
+    def follow(self, ends: RowEnds) -> None:
+        """Let other discharges and levels act at the ends from the next exchange on."""
+        self._arrays = replace(self._arrays, ends=ends)
 
     def changed(self, scene: Scene, row: ColumnRow, state: RowState) -> "GrainsInRow":
         """The same grains in a scene that the timeline changed: its slope, or removed fixed grains."""

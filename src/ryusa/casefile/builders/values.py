@@ -25,8 +25,9 @@ from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
+from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span, width_of
+from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
 
@@ -55,7 +56,7 @@ def sizes(case: "Case") -> tuple[float, float, float]:
 def drawn_materials(case: "Case") -> set[str | None]:
     """Materials of which the builder or a feed draws the sizes; None is that of [grains]."""
     laid = set(laid_shares(case)) if table_of(case) is None else set[str | None]()
-    fed = {feed.material for feed in case.feeds if feed.rate is not None}
+    fed = {feed.material for feed in case.feeds if feed.brings}
     return laid | fed or ({None} if table_of(case) is None else set[str | None]())
 
 
@@ -64,7 +65,7 @@ def size_range(case: "Case", name: str | None) -> tuple[float, float]:
     table = table_of(case)
     if table is None:
         return drawn_range(case, name)
-    of_it = {feed.material for feed in case.feeds if feed.rate is not None}
+    of_it = {feed.material for feed in case.feeds if feed.brings}
     every = table.column("d")[~table.fixed]
     there = (float(every.min()), float(every.max()))
     if name not in of_it:

@@ -9,18 +9,10 @@ import numpy as np
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.ends import discharge_of, hydrograph_of, width_of
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowDamSection, row_keys
-from ryusa.casefile.row.values import (
-    bed_over,
-    bottom_points,
-    crest_of,
-    dam_span,
-    discharge_of,
-    normal_depth,
-    row_plan,
-    width_of,
-)
+from ryusa.casefile.row.values import bed_over, bottom_points, crest_of, dam_span, normal_depth, row_plan
 from ryusa.casefile.traffic.schema import FeedSection
 from ryusa.casefile.traffic.values import corners_of, feed_end, grains_per_second, mean_mass
 from ryusa.laws.transport import solid_discharge_smart_jaeggi
@@ -97,7 +89,7 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     feeds = [(at, one) for one in case.feeds if (at := _place(one)) is not None and at < first]
     back = {one.to for one in case.exits}
     odd = any(one.material is not None or one.name in back for _, one in feeds)
-    odd = odd or any(one.discharge is not None for one in case.timeline)
+    odd = odd or any(one.discharge is not None for one in case.timeline) or hydrograph_of(case) is not None
     odd = odd or fed_by_reach(case)
     if keys is None or width is None or dam.concentration is not None or not feeds or odd:
         return None

@@ -9,8 +9,9 @@ import numpy as np
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
-from ryusa.casefile.row.reach import END
-from ryusa.casefile.row.schema import RowDamSection, RowEndSection, RowSection, row_keys
+from ryusa.casefile.row.end_checks import check_courses, check_ends
+from ryusa.casefile.row.ends import discharge_of, levels_of, peak_discharge
+from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
 from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
     MOST_CELLS,
@@ -20,17 +21,14 @@ from ryusa.casefile.row.values import (
     crest_of,
     dam_span,
     deepest,
-    discharge_of,
     enters_fast,
     inlet_depth,
     line_points,
     not_downstream,
-    peak_discharge,
     reaches,
     row_plan,
     stream,
     water_alone,
-    width_of,
 )
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
@@ -41,13 +39,10 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 MOST_SEGMENTS = 100_000
-_NEEDS = {"level": ("level",), "discharge": ("discharge",)}  # keys that a kind of end needs
-_TAKES = {"level": ("level",), "discharge": ("discharge", "depth", "profile")}
 _FORMS = (
     "must be 'stress' in a row: with a sloping surface 'weight' counts the pressure twice, and with "
     "'pressure' still water would move"
 )
-_OTHER_END = "give [water.row.{}] with end = 'wall', 'level', 'free fall' or 'same depth'"
 
 
 def check_row(case: "Case") -> Iterator[CaseError]:
@@ -64,7 +59,7 @@ def check_row(case: "Case") -> Iterator[CaseError]:
     else:
         yield from _among_grains(case, keys)
         return
-    found += [*_lines(case, keys, water), *_ends(case, keys)]
+    found += [*_lines(case, keys, water), *check_ends(case, keys), *check_courses(case)]
     found = found or [*_shape(case, keys)]
     yield from found
     if not found and stream(case):
@@ -115,10 +110,11 @@ def _grains(case: "Case") -> Iterator[CaseError]:
         )
         break
     for k, change in enumerate(case.timeline):
-        if change.slope is None and change.slope_angle is None and change.discharge is None:
+        if all(one is None for one in (change.slope, change.slope_angle, change.discharge, change.level)):
             yield CaseError(
-                f"timeline.{k}", None, "a row without grains takes changes of slope and discharge alone"
-            )
+                f"timeline.{k}", None,
+                "a row without grains takes changes of slope, discharge and level alone",
+            )  # fmt: skip
 
 
 def _ending(case: "Case") -> Iterator[CaseError]:
@@ -241,54 +237,6 @@ def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[Case
         )  # fmt: skip
 
 
-def _ends(case: "Case", keys: RowSection) -> Iterator[CaseError]:
-    """Each end with what it needs, and both or none."""
-    ends = {"upstream": keys.upstream, "downstream": keys.downstream}
-    for name, end in ends.items():
-        other = next(one for one in ends if one != name)
-        if end is None and ends[other] is not None:
-            yield CaseError(
-                f"water.row.{name}", None, f"missing; a row has two ends, or none and is periodic: "
-                f"{_OTHER_END.format(name)}",
-            )  # fmt: skip
-        if end is not None:
-            yield from _end(case, name, end)
-    if keys.upstream is None and keys.downstream is None:
-        first, last = bottom_points(case)[0][1], bottom_points(case)[-1][1]
-        if first != last:
-            yield CaseError(
-                "water.row.bottom", None, f"ends at z = {last:g} m and begins at {first:g} m, but a row "
-                "without ends is periodic: give [water.row.upstream] and [water.row.downstream], or the "
-                "slope as motion.slope",
-            )  # fmt: skip
-
-
-def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
-    key = f"water.row.{name}"
-    if end.end in {"discharge", END} and name == "downstream":
-        yield CaseError(
-            f"{key}.end", end.end, f"can only be given upstream; {_OTHER_END.format('downstream')}"
-        )
-        return
-    for one in _NEEDS.get(end.end, ()):
-        if getattr(end, one) is None:
-            yield CaseError(f"{key}.{one}", None, f"missing; end '{end.end}' needs it")
-    for one in ("level", "discharge", "depth", "profile"):
-        if one not in _TAKES.get(end.end, ()) and given(end, one):
-            shown = None if one == "discharge" else getattr(end, one)
-            yield CaseError(f"{key}.{one}", shown, f"has no effect with end '{end.end}'")
-    if end.discharge is not None:
-        value, unit = end.discharge
-        if not (value > 0.0 or (value == 0.0 and peak_discharge(case) > 0.0)):
-            allowed = "must be above 0, along +x; or 0 where [[timeline]] has a discharge"
-            yield CaseError(f"{key}.discharge", f"{value:g} {unit}", allowed)
-        if unit == "m3/s" and width_of(case) is None:
-            yield CaseError(
-                "water.row.width", None, f"missing; {key}.discharge is in m3/s: give the width of the "
-                "stream, or the discharge per width in m2/s",
-            )  # fmt: skip
-
-
 def _shape(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     """What only the divided row shows: slopes, cells, dams, depths."""
     points = np.array(bottom_points(case))
@@ -384,8 +332,8 @@ def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError
             "water.row.height", keys.height, f"must be at least {deepest(case, plan):.4g} m, the depth to be "
             "expected (at the start, of normal flow on the bed, behind dams, below a level)",
         )  # fmt: skip
-    wet = [one for one in (keys.upstream, keys.downstream) if one is not None and one.level is not None]
-    if depth.max() <= 0.0 and not wet and not discharge_of(case) > 0.0:
+    wet = any(levels_of(case, one) for one in (keys.upstream, keys.downstream) if one is not None)
+    if depth.max() <= 0.0 and not wet and not peak_discharge(case) > 0.0:
         yield CaseError(
             "water.row.surface", None, "lies below the bottom everywhere, and no water enters: the row would "
             "stay dry",

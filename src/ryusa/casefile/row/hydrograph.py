@@ -1,20 +1,29 @@
-"""Discharges that follow one another at the upper end of a row: entries of [[timeline]]."""
+"""Discharge and level that change at the ends of a row: entries of [[timeline]], a hydrograph, a stage."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.row.ends import (
+    HYDROGRAPH,
+    STAGE,
+    hydrograph_of,
+    per_width,
+    stage_of,
+    width_of,
+)
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import per_width, width_of
-from ryusa.casefile.rows import ExplainRow, number
+from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
+from ryusa.model.course import Course
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 
 def hydrograph_rows(case: "Case") -> list[ExplainRow]:
-    """Rows of the discharges after the first."""
-    return [
+    """Rows of the discharges and levels after the first."""
+    rows = [
         number(
             "water", f"discharge from {one.at:g} s", per_width(case, one.discharge), "m2/s",
             f"timeline.{k}.discharge",
@@ -22,11 +31,42 @@ def hydrograph_rows(case: "Case") -> list[ExplainRow]:
         for k, one in enumerate(case.timeline)
         if one.discharge is not None
     ]  # fmt: skip
+    rows += [
+        number("water", f"level downstream from {one.at:g} s", one.level, "m", f"timeline.{k}.level")
+        for k, one in enumerate(case.timeline)
+        if one.level is not None
+    ]
+    if (course := hydrograph_of(case)) is not None:
+        rows.append(_course(case, "hydrograph", course, "m2/s", HYDROGRAPH))
+        volume = course.total(case.stop.time or 0.0) - course.total(0.0)
+        rows.append(number("water", "water that enters", volume, "m2", f"per width; {HYDROGRAPH}"))
+    if (course := stage_of(case)) is not None:
+        rows.append(_course(case, "stage downstream", course, "m", STAGE))
+    return rows
+
+
+def _course(case: "Case", name: str, course: Course, unit: str, key: str) -> ExplainRow:
+    """A course from its first point to its last."""
+    end = case.stop.time or math.inf
+    text = f"{min(course.y):.4g} to {max(course.y):.4g} {unit}"
+    late = f"; the run ends at {end:g} s" if end < course.t[-1] else ""
+    early = f"; constant from {course.t[-1]:g} s on" if end > course.t[-1] else ""
+    return word(
+        "water", name, text,
+        f"{key}: {len(course.t)} points from {course.t[0]:g} to {course.t[-1]:g} s, straight between"
+        f"{late}{early}",
+        "note" if late else "",
+    )  # fmt: skip
 
 
 def check_hydrograph(case: "Case") -> Iterator[CaseError]:
-    """Find discharges that have no place where they could enter, and those that are none."""
+    """Find discharges and levels of the timeline without the end they belong to, and those that are none."""
     keys = row_keys(case)
+    below = None if keys is None else keys.downstream
+    for k, one in enumerate(case.timeline):
+        if one.level is not None and (below is None or below.end != "level"):
+            allowed = "needs water.row.downstream with end = 'level'"
+            yield CaseError(f"timeline.{k}.level", f"{one.level:g} m", allowed)
     end = None if keys is None else keys.upstream
     for k, one in enumerate(case.timeline):
         if one.discharge is None:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.resolved import resolved_contact
+from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach import END, KEY, NAME
 from ryusa.casefile.row.reach_source import reach_of, run_of_reach
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import stream, width_of
+from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.model.row import AGREE

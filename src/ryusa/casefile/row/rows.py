@@ -10,6 +10,7 @@ from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
+from ryusa.casefile.row.ends import discharge_of, least_discharge, peak_discharge, width_of
 from ryusa.casefile.row.hydrograph import hydrograph_rows
 from ryusa.casefile.row.reach_rows import reach_rows
 from ryusa.casefile.row.reach_source import reach_of
@@ -26,18 +27,14 @@ from ryusa.casefile.row.values import (
     crest_of,
     critical_depth,
     dam_span,
-    discharge_of,
     fastest,
     inlet_depth,
-    least_discharge,
-    peak_discharge,
     reaches,
     row_plan,
     segments_of,
     stream,
     stream_span,
     water_alone,
-    width_of,
 )
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 
@@ -128,10 +125,12 @@ def _end(keys: RowSection) -> str:
 
 def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
     """Discharge, critical depth, and normal flow on each reach."""
-    q = discharge_of(case)
-    if not q > 0.0:
-        return []
+    q, peak = discharge_of(case), peak_discharge(case)
+    if not peak > 0.0:
+        return hydrograph_rows(case)
     origin = "water.row.upstream.discharge"
+    if keys.upstream is not None and keys.upstream.hydrograph is not None:
+        origin = "water.row.upstream.hydrograph at the start"
     if keys.upstream is not None and keys.upstream.discharge is not None:
         value, unit = keys.upstream.discharge
         origin += "" if unit == "m2/s" else f", {value:g} m3/s over a width of {width_of(case):g} m"
@@ -144,9 +143,8 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
         *hydrograph_rows(case),
         *reach_rows(case),
     ]
-    peak = peak_discharge(case)
     for more, each in (("", q), (", at the peak", peak))[: 2 if peak > q else 1]:
-        for one in reaches(case, each):
+        for one in reaches(case, each) if each > 0.0 else ():
             rows += _reach(one, more)
             rows += _transport(case, one, each, more) if stream(case) else []
     least = least_discharge(case)

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 
+from ryusa.casefile.course import FILE_OR_POINTS, AtPoints, CourseFile, file_or_points
 from ryusa.casefile.files import RelativePath
-from ryusa.casefile.quantities import Count, Length, Name, Number, PositiveLength
+from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, PositiveLength
 from ryusa.casefile.section import Section
 from ryusa.units import UnitError, quantity
 
@@ -46,14 +47,14 @@ RowDischarge = Annotated[
 ]  # fmt: skip
 
 
-def _line_kind(value: Any) -> str:
-    return "<file>" if isinstance(value, str) else "<points>"
-
-
+HydrographPoints = Annotated[tuple[tuple[Moment, RowDischarge], ...], AtPoints, Tag("<points>")]
+Hydrograph = Annotated[CourseFile | HydrographPoints, FILE_OR_POINTS]
+StagePoints = Annotated[tuple[tuple[Moment, Length], ...], AtPoints, Tag("<points>")]
+Stage = Annotated[CourseFile | StagePoints, FILE_OR_POINTS]
 LineFile = RelativePath
 LinePoints = Annotated[tuple[tuple[Length, Length], ...], Field(min_length=2, max_length=10_000)]
 Line = Annotated[
-    Annotated[LineFile, Tag("<file>")] | Annotated[LinePoints, Tag("<points>")], Discriminator(_line_kind)
+    Annotated[LineFile, Tag("<file>")] | Annotated[LinePoints, Tag("<points>")], Discriminator(file_or_points)
 ]
 
 
@@ -66,8 +67,16 @@ class RowEndSection(Section):
     reach over an even bed, the finished periodic `run`, that feeds water and grains."""
     level: Length | None = None
     """Height of the surface beyond end = "level", over the x axis."""
+    stage: Stage | None = None
+    """Height of the surface over time beyond end = "level", downstream alone and instead of `level`: a CSV
+    file in the folder of the case with the header t [s],z [m], or pairs of time and height, straight between
+    them. Before the first and after the last it stays."""
     discharge: RowDischarge | None = None
     """Discharge of end = "discharge", upstream alone: per width, or of the whole width (`width`)."""
+    hydrograph: Hydrograph | None = None
+    """Discharge over time, instead of `discharge`: a CSV file in the folder of the case with the header
+    t [s],q [m3/s] (or m2/s), or pairs of time and discharge, straight between them. Before the first and
+    after the last it stays."""
     depth: PositiveLength | None = None
     """Depth of the water that enters, with end = "discharge" alone; over a bed of grains in the first segment
     it counts from its top. When not given: that of the row, and where normal flow is faster than waves the

@@ -11,6 +11,7 @@ from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, built_counts, sizes
 from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.row.values import (
@@ -23,7 +24,6 @@ from ryusa.casefile.row.values import (
     row_plan,
     stream_span,
     walls_of_stream,
-    width_of,
 )
 from ryusa.casefile.section import given
 from ryusa.casefile.traffic.schema import ExitSection
@@ -174,7 +174,7 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     assert isinstance(build, StreamSection)
     low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
     begin, end = stream_span(case)
-    fed = fed_by_reach(case) or any(feed.rate is not None for feed in case.feeds)
+    fed = fed_by_reach(case) or any(feed.brings for feed in case.feeds)
     if build.bed == 0.0 and not fed:
         yield CaseError(
             "build.bed", None, "gives no grain, and no feed brings one: give a thickness, or [[feeds]]"

@@ -17,8 +17,13 @@ from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.backwater import backwater, bore_depth, level_of_basin
+from ryusa.casefile.row.ends import levels_of, peak_discharge, width_of
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import Discharge, RowDamSection, RowSection, row_keys
+from ryusa.casefile.row.schema import (
+    RowDamSection,
+    RowSection,
+    row_keys,
+)
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
 from ryusa.model.arrays import Floats
@@ -87,12 +92,14 @@ def not_downstream(points: Points, strictly: bool = False) -> str:
 
 
 def line_files(case: "Case") -> list[str]:
-    """Names of the CSV files of the lines of a row, and of the bed along it."""
+    """Names of the CSV files of the lines of a row, of the bed along it, and of what changes over time."""
     keys = row_keys(case)
     if keys is None:
         return []
     bed = case.build.bed if case.build.kind == "stream" else None
-    return [one for one in (keys.bottom, keys.surface, bed) if isinstance(one, str)]
+    hydrograph = None if keys.upstream is None else keys.upstream.hydrograph
+    stage = None if keys.downstream is None else keys.downstream.stage
+    return [one for one in (keys.bottom, keys.surface, bed, hydrograph, stage) if isinstance(one, str)]
 
 
 def bottom_points(case: "Case") -> Points:
@@ -106,45 +113,6 @@ def segments_of(case: "Case") -> tuple[float, float, int]:
     length = points[-1][0] - points[0][0]
     count = keys.segments or max(round(length / (keys.segment or length)), 1)
     return points[0][0], length / count, count
-
-
-def discharge_of(case: "Case") -> float:
-    """Discharge per width that enters upstream [m2/s]; nan where none is given."""
-    if (reach := reach_of(case)) is not None:
-        return reach.discharge
-    end = _row(case).upstream
-    if end is None or end.discharge is None:
-        return math.nan
-    return per_width(case, end.discharge)
-
-
-def per_width(case: "Case", discharge: Discharge) -> float:
-    """A discharge per width [m2/s]; nan for one of the whole width where that is not given."""
-    value, unit = discharge
-    if unit == "m2/s":
-        return value
-    width = width_of(case)
-    return math.nan if width is None else value / width
-
-
-def peak_discharge(case: "Case") -> float:
-    """Largest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
-    return max(_discharges(case))
-
-
-def least_discharge(case: "Case") -> float:
-    """Smallest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
-    return min(_discharges(case))
-
-
-def _discharges(case: "Case") -> list[float]:
-    steps = [per_width(case, one.discharge) for one in case.timeline if one.discharge is not None]
-    return [discharge_of(case), *steps]
-
-
-def width_of(case: "Case") -> float | None:
-    """Width of the stream [m]; None if not given."""
-    return _row(case).width or column_keys(case).side_walls
 
 
 def cell_of(case: "Case") -> float:
@@ -327,8 +295,8 @@ def deepest(case: "Case", plan: RowPlan) -> float:
                 float((crest + over - tilt * (dam.begin - plan.x) - plan.bottom)[before].max(initial=0.0))
             )
     for end, at in ((keys.upstream, plan.x[0]), (keys.downstream, plan.x[-1])):
-        if end is not None and end.level is not None:
-            found.append(float((end.level - tilt * (at - plan.x) - plan.bottom).max()))
+        for level in [] if end is None else levels_of(case, end):
+            found.append(float((level - tilt * (at - plan.x) - plan.bottom).max()))
     if (entering := inlet_depth(case)) is not None:
         found.append(entering + float(bed[0]))
     return max((one for one in found if one > 0.0), default=0.0)
@@ -349,7 +317,7 @@ def highest_water(case: "Case", plan: RowPlan) -> float:
     up = rigid - tilt * plan.x  # over a level line
     volume = float(np.maximum(plan.start - rigid, 0.0).sum()) * plan.dx
     if q > 0.0:
-        below = -math.inf if end.level is None else end.level - tilt * float(plan.x[-1])
+        below = max(levels_of(case, end), default=-math.inf) - tilt * float(plan.x[-1])
         rough = 0.0 if column_keys(case).bed == "smooth" else wet.roughness or reference_diameter(case)
         held = backwater(
             up, plan.dx, q, below, critical_depth(case, q), case.motion.gravity, rough, wet.viscosity

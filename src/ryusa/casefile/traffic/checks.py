@@ -7,17 +7,23 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
 from ryusa.casefile.builders.values import periodic, size_range, sizes
+from ryusa.casefile.course import faults_of_course
 from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.section import given
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import (
     FULLEST,
     FULLEST_PLANE,
+    end_of_total,
     fed_count,
+    feed_begin,
     feed_end,
     grains_per_second,
-    seconds_of_total,
+    sedigraph_of,
+    sedigraph_points,
     share_filled,
+    unit_of,
 )
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
@@ -34,7 +40,7 @@ def check_traffic(case: "Case") -> Iterator[CaseError]:
         if isinstance(case.build, EmptySection) and row_keys(case) is None:
             yield CaseError("build.kind", "empty", "gives no grain; give [[feeds]]")
         return
-    if isinstance(case.build, EmptySection) and all(feed.rate is None for feed in case.feeds):
+    if isinstance(case.build, EmptySection) and not any(feed.brings for feed in case.feeds):
         yield CaseError("build.kind", "empty", "gives no grain, and no feed has a rate: give feeds.0.rate")
     yield from _case(case)
     yield from _names(case)
@@ -180,9 +186,12 @@ def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
         )
         return
-    if feed.rate is None and not _led(case, feed):
+    if not feed.brings and not _led(case, feed):
         yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
-    if feed.rate is not None:
+    if feed.sedigraph is not None:
+        faults = [*_sedigraph(case, key, feed)]
+        yield from faults or _rate(case, key, feed)
+    elif feed.rate is not None:
         yield from _rate(case, key, feed)
     for k, one in enumerate(case.exits):
         if _meet(feed, one):
@@ -200,44 +209,62 @@ def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
             yield CaseError(key, None, f"lies behind the plane '{plane.name}': no grain finds a place there")
 
 
+def _sedigraph(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+    """Find a sedigraph beside what it stands for, out of order, or with rates that cannot be."""
+    for name in ("rate", "begin", "end"):
+        if given(feed, name):
+            yield CaseError(f"{key}.{name}", None, f"stands beside {key}.sedigraph, which says it: give one")
+    points = sedigraph_points(case, feed)
+    yield from faults_of_course(f"{key}.sedigraph", points)
+    units = sorted({unit for _, (_, unit) in points})
+    if len(units) > 1:
+        yield CaseError(f"{key}.sedigraph", None, f"mixes {' and '.join(units)}: give all rates alike")
+    for t, (rate, unit) in points:
+        if not 0.0 <= rate < math.inf:
+            yield CaseError(f"{key}.sedigraph", f"{rate:g} {unit}", f"is at {t:g} s; must be 0 or above")
+            return
+    if not any(rate > 0.0 for _, (rate, _) in points):
+        yield CaseError(f"{key}.sedigraph", None, "brings no grain: every rate is 0")
+
+
 def _rate(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
-    assert feed.rate is not None
-    rate, unit = feed.rate
-    text, end = f"{rate:g} {unit}", feed_end(case, feed)
+    course, begin = sedigraph_of(case, feed), feed_begin(case, feed)
+    rate, unit = (max(course.y), unit_of(case, feed)) if course is not None else feed.rate or (0.0, "")
+    text, end, which = f"{rate:g} {unit}", feed_end(case, feed), "rate" if course is None else "sedigraph"
     if not 0.0 < rate < math.inf:
         yield CaseError(f"{key}.rate", text, "must be greater than 0")
         return
     if feed.total is not None:
         amount, name = feed.total
-        last, seconds = min(feed.end or math.inf, case.stop.time or math.inf), seconds_of_total(case, feed)
+        lasts = [feed.end, case.stop.time, None if course is None else course.t[-1]]
+        last, done = min(one for one in (*lasts, math.inf) if one is not None), end_of_total(case, feed)
         if not amount > 0.0:
             yield CaseError(f"{key}.total", f"{amount:g} {name}", "must be greater than 0")
             return
-        if feed.begin + seconds > last * (1.0 + 1e-9):
-            yield CaseError(
-                f"{key}.total", f"{amount:g} {name}",
-                f"is not fed by {last:g} s: at this rate it takes {seconds:.4g} s from {feed.begin:g} s on",
-            )  # fmt: skip
+        if done > last * (1.0 + 1e-9):
+            needs = "" if course else f": at this rate it takes {done - begin:.4g} s from {begin:g} s on"
+            yield CaseError(f"{key}.total", f"{amount:g} {name}", f"is not fed by {last:g} s{needs}")
             return
     if math.isinf(end):
         yield CaseError(f"{key}.end", None, "missing; without stop.time a feed needs an end")
         return
-    if feed.begin >= end:
+    if begin >= end:
         name = "end" if feed.end is not None and feed.end == end else "begin"
+        name = name if course is None else which
         yield CaseError(
             f"{key}.{name}",
-            getattr(feed, name),
+            begin if course else getattr(feed, name),
             "leaves no time to feed: begin must come before end and stop.time",
         )
         return
     if fed_count(case, feed) < 1:
-        yield CaseError(f"{key}.rate", text, f"brings no grain before {end:g} s")
+        yield CaseError(f"{key}.{which}", text, f"brings no grain before {end:g} s")
     most = FULLEST_PLANE if case.motion.plane else FULLEST
     share = share_filled(case, feed, grains_per_second(case, feed))
     if share > most:
         fits = rate * most / share
         yield CaseError(
-            f"{key}.rate", text,
+            f"{key}.{which}", text,
             f"cannot fit: grains would fill {share:.2g} of the room at the feed, and at most {most:g} can be "
             f"filled at random; lower it below {fits:.3g} {unit}, or give more room or speed",
         )  # fmt: skip

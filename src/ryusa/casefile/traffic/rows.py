@@ -7,10 +7,12 @@ from ryusa.casefile.traffic.values import (
     FULLEST,
     FULLEST_PLANE,
     fed_count,
+    feed_begin,
     feed_end,
     grains_per_second,
     mean_mass,
     share_filled,
+    unit_of,
 )
 
 if TYPE_CHECKING:
@@ -25,14 +27,16 @@ def traffic_rows(case: "Case") -> list[ExplainRow]:
     most = FULLEST_PLANE if case.motion.plane else FULLEST
     for k, feed in enumerate(case.feeds):
         key, name = f"feeds.{k}", f"feed '{feed.name}'"
-        if feed.rate is None:
+        if not feed.brings:
             rows.append(word("traffic", name, "recirculation", "only grains that an exit leads to it"))
             continue
         rate, end = grains_per_second(case, feed), feed_end(case, feed)
         shown = f"{rate:.4g} grains/s, {rate * mean_mass(case, feed.material):.4g} kg/s"
-        window = f"{key}.rate, from {feed.begin:g} s to {end:g} s"
+        which = "rate" if feed.sedigraph is None else "sedigraph, at its peak"
+        window = f"{key}.{which}, from {feed_begin(case, feed):g} s to {end:g} s"
         rows.append(ExplainRow("traffic", name, rate, "1/s", shown, window))
-        about = "rate times duration" + (", with the mean mass of a grain" if feed.rate[1] == "kg/s" else "")
+        by_mass = ", with the mean mass of a grain" if unit_of(case, feed) == "kg/s" else ""
+        about = "rate times duration" + by_mass
         rows.append(count("traffic", f"{name}: grains", fed_count(case, feed), about))
         share = share_filled(case, feed, rate)
         late = (

@@ -3,8 +3,9 @@
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, WithJsonSchema
+from pydantic import BeforeValidator, Tag, WithJsonSchema
 
+from ryusa.casefile.course import FILE_OR_POINTS, AtPoints, CourseFile
 from ryusa.casefile.quantities import Moment, Name, Number, Point, PositiveLength, Speed
 from ryusa.casefile.section import Section
 from ryusa.units import UnitError, quantity
@@ -44,6 +45,9 @@ FeedRate = Annotated[
     ),
 ]
 
+
+SedigraphPoints = Annotated[tuple[tuple[Moment, FeedRate], ...], AtPoints, Tag("<points>")]
+Sedigraph = Annotated[CourseFile | SedigraphPoints, FILE_OR_POINTS]
 
 _COUNT = re.compile(r"\s*([0-9]+)\s*grains?\s*")
 Total = tuple[float, Literal["kg", "grains"]]
@@ -93,6 +97,10 @@ class FeedSection(Section):
     rate: FeedRate | None = None
     """Mass or number of grains in a time, "0.1 kg/s" or "20 grains/s"; without a rate only grains that an
     exit sends here come in."""
+    sedigraph: Sedigraph | None = None
+    """Rate over time, instead of `rate`, `begin` and `end`: a CSV file in the folder of the case with the
+    header t [s],rate [kg/s], or pairs of time and rate, straight between them. Before the first and after the
+    last the feed brings nothing."""
     velocity: tuple[Speed, Speed, Speed] = (0.0, 0.0, 0.0)
     """Velocity of every grain that enters."""
     begin: Moment = 0.0
@@ -106,6 +114,11 @@ class FeedSection(Section):
     those at t = 0, and velocity is relative to the wall, with its direction at t = 0."""
     material: Name | None = None
     """Material of its grains, of [materials], with its sizes; that of [grains] when not given."""
+
+    @property
+    def brings(self) -> bool:
+        """Whether it brings grains of its own."""
+        return self.rate is not None or self.sedigraph is not None
 
 
 class ExitSection(Section):

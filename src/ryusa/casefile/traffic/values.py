@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ryusa.casefile.course import Points, points_of
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass, mean_cube, sized_as
 from ryusa.casefile.row.reach_source import fed_by_reach_in_all
-from ryusa.casefile.traffic.schema import FeedSection
+from ryusa.casefile.traffic.schema import FeedSection, read_rate
 from ryusa.model.arrays import Floats
+from ryusa.model.course import Course
 from ryusa.model.wall_traffic import corners_of_disc
 
 if TYPE_CHECKING:
@@ -20,19 +22,54 @@ FULLEST = 0.38  # largest share of a volume that spheres take that are placed at
 FULLEST_PLANE = 0.547  # discs in a plane
 
 
+def feed_begin(case: "Case", feed: FeedSection) -> float:
+    """When the first grain of a feed is due [s]."""
+    course = sedigraph_of(case, feed)
+    return feed.begin if course is None else course.when(0.0)
+
+
 def feed_end(case: "Case", feed: FeedSection) -> float:
     """When the last grain of a feed may be due [s]; inf where the case does not say."""
     ends = [one for one in (feed.end, case.stop.time) if one is not None]
-    return min([*ends, feed.begin + seconds_of_total(case, feed)])
+    if (course := sedigraph_of(case, feed)) is not None:
+        ends.append(course.t[-1])
+    return min([*ends, end_of_total(case, feed)])
 
 
-def seconds_of_total(case: "Case", feed: FeedSection) -> float:
-    """Time in which a feed brings its `total` [s]; inf without one."""
-    each = grains_per_second(case, feed)
-    if feed.total is None or not each > 0.0:
+def end_of_total(case: "Case", feed: FeedSection) -> float:
+    """When a feed has brought its `total` [s]; inf without one, and where it never has."""
+    if feed.total is None:
         return math.inf
     amount, unit = feed.total
-    return amount / (each * mean_mass(case, feed.material)) if unit == "kg" else amount / each
+    if unit == "kg" and unit_of(case, feed) != "kg/s":
+        amount /= mean_mass(case, feed.material)
+    elif unit == "grains" and unit_of(case, feed) == "kg/s":
+        amount *= mean_mass(case, feed.material)
+    if (course := sedigraph_of(case, feed)) is not None:
+        return course.when(amount) if amount <= course.total(course.t[-1]) * (1.0 + 1e-12) else math.inf
+    return feed.begin + amount / feed.rate[0] if feed.rate is not None and feed.rate[0] > 0.0 else math.inf
+
+
+def sedigraph_of(case: "Case", feed: FeedSection) -> Course | None:
+    """Rate of a feed over time, in its unit; None where none is given."""
+    if feed.sedigraph is None:
+        return None
+    points = sedigraph_points(case, feed)
+    return Course(tuple(t for t, _ in points), tuple(rate for _, (rate, _) in points))
+
+
+def sedigraph_points(case: "Case", feed: FeedSection) -> Points:
+    """Points of a sedigraph as given, or as its file holds them."""
+    key = f"feeds.{case.feeds.index(feed)}.sedigraph"
+    assert feed.sedigraph is not None
+    return points_of(case, key, feed.sedigraph, "rate", read_rate, "'t [s],rate [kg/s]'")
+
+
+def unit_of(case: "Case", feed: FeedSection) -> str:
+    """Unit of the rate of a feed: kg/s or grains/s; nothing where none of its own grains come."""
+    if feed.sedigraph is not None:
+        return str(sedigraph_points(case, feed)[0][1][1])
+    return "" if feed.rate is None else feed.rate[1]
 
 
 def corners_of(feed: FeedSection) -> tuple[Floats, Floats] | None:
@@ -55,16 +92,24 @@ def mean_mass(case: "Case", material: str | None = None) -> float:
 
 
 def grains_per_second(case: "Case", feed: FeedSection) -> float:
-    """Grains of its own that a feed brings in a second."""
-    if feed.rate is None:
-        return 0.0
-    rate, unit = feed.rate
-    return rate / mean_mass(case, feed.material) if unit == "kg/s" else rate
+    """Grains of its own that a feed brings in a second, at most where its rate changes."""
+    course = sedigraph_of(case, feed)
+    rate = max(course.y) if course is not None else 0.0 if feed.rate is None else feed.rate[0]
+    return rate / mean_mass(case, feed.material) if unit_of(case, feed) == "kg/s" else rate
+
+
+def fed_amount(case: "Case", feed: FeedSection) -> float:
+    """Grains or kilograms, as its rate has it, that a feed brings up to its end."""
+    begin, end = feed_begin(case, feed), feed_end(case, feed)
+    if (course := sedigraph_of(case, feed)) is not None:
+        return max(course.total(end), 0.0)
+    return 0.0 if feed.rate is None else feed.rate[0] * (end - begin)
 
 
 def fed_count(case: "Case", feed: FeedSection) -> int:
     """Number of its own grains that a feed brings; by the mean mass where its rate is a mass."""
-    return math.ceil(grains_per_second(case, feed) * (feed_end(case, feed) - feed.begin) * (1.0 - 1e-12))
+    each = mean_mass(case, feed.material) if unit_of(case, feed) == "kg/s" else 1.0
+    return math.ceil(fed_amount(case, feed) / each * (1.0 - 1e-12))
 
 
 def fed_in_all(case: "Case") -> int:
