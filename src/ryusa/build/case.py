@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.build.assemble import Laws, assemble
+from ryusa.build.belts import refuse_idle_belts
 from ryusa.build.box import box
 from ryusa.build.clumps import clumps_of
 from ryusa.build.column import column_of, zero_of
@@ -153,6 +154,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     scene = moving_with(scene)
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)
+    refuse_idle_belts(case, scene)
     passed = refuse_passing_walls(case, scene)
     refuse_idle_servos(case, scene, state)
     pressed = refuse_crushing_servos(scene)

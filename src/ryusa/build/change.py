@@ -13,7 +13,7 @@ from ryusa.casefile.row.ends import per_width
 from ryusa.casefile.walls import MoveSection
 from ryusa.errors import CaseError
 from ryusa.model import Scene
-from ryusa.model.walls import AXIS_POINT, PHASE, RATE, SPIN, SWING, VELOCITY, carried_on
+from ryusa.model.walls import AXIS_POINT, PHASE, RATE, SPIN, SURFACE, SWING, TURN, VELOCITY, carried_on
 
 
 def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
@@ -68,6 +68,8 @@ def _moved(scene: Scene, move: MoveSection, at: float) -> Scene:
     row[SPIN : SPIN + 3] = move.angular_velocity or 0.0
     row[SWING : SWING + 3] = move.amplitude or 0.0
     row[RATE], row[PHASE] = 2.0 * math.pi * (move.frequency or 0.0), move.phase
+    if move.surface_velocity is not None:  # as it is now; it turns with the wall from here on
+        row[SURFACE : SURFACE + 3] = np.array(move.surface_velocity) @ row[TURN : TURN + 9].reshape(3, 3)
     if move.axis_point is not None:
         row[AXIS_POINT : AXIS_POINT + 3] = move.axis_point
     motion[w] = row

@@ -26,6 +26,7 @@ from ryusa.model.walls import (
     PHASE,
     RATE,
     SPIN,
+    SURFACE,
     SWING,
     VELOCITY,
     Ints,
@@ -50,6 +51,7 @@ class WallMotion:
     amplitude: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of an oscillation [m]
     frequency: float = 0.0  # [Hz]
     phase: float = 0.0  # [rad]
+    surface_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of a belt, along its faces [m/s]
 
 
 @dataclass(frozen=True)
@@ -166,6 +168,7 @@ def _motion(motion: WallMotion) -> Floats:
     row[0, AXIS_POINT : AXIS_POINT + 3], row[0, VELOCITY : VELOCITY + 3] = motion.axis_point, motion.velocity
     row[0, SPIN : SPIN + 3], row[0, SWING : SWING + 3] = motion.spin, motion.amplitude
     row[0, RATE], row[0, PHASE] = 2.0 * math.pi * motion.frequency, motion.phase
+    row[0, SURFACE : SURFACE + 3] = motion.surface_velocity
     return row
 
 
@@ -276,6 +279,7 @@ def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
         amplitude=wall.amplitude or (0.0, 0.0, 0.0),
         frequency=wall.frequency or 0.0,
         phase=wall.phase,
+        surface_velocity=wall.surface_velocity or (0.0, 0.0, 0.0),
     )
     return replace(made, motion=motion, servo=_servo(wall, made))
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from ryusa.casefile.belts import belt_rows, check_belts
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.files import RelativePath
 from ryusa.casefile.mesh import mesh_of, mesh_rows
@@ -97,6 +98,9 @@ class WallSection(Section):
     """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase of that oscillation at the start."""
+    surface_velocity: VelocityVector | None = None
+    """Velocity of the surface of a belt against the wall, which itself may stand still. At each contact its
+    part along the face counts. It turns with the wall, and is that at t = 0."""
     servo: ServoSection | None = None
     """Presses the wall on the grains with a given force or pressure, beside its other motion."""
     material: Name | None = None
@@ -120,6 +124,8 @@ class MoveSection(Section):
     """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase at which it begins."""
+    surface_velocity: VelocityVector | None = None
+    """Velocity of the surface of a belt against the wall from now on."""
 
 
 def check_walls(case: "Case") -> Iterator[CaseError]:
@@ -154,6 +160,7 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
                 yield CaseError(at, name, f"must be a wall: {known}", nearest_word(name, names))
             yield from _motion(case, f"timeline.{k}.move", entry.move)
     yield from check_moves(case)
+    yield from check_belts(case)
 
 
 def _shape(key: str, wall: WallSection) -> Iterator[CaseError]:
@@ -283,6 +290,7 @@ def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         moves = [name for name in ("velocity", "angular_velocity", "amplitude") if given(wall, name)]
         if moves:
             rows.append(word("walls", f"{wall.name}: moves", _motion_text(wall), ", ".join(moves)))
+        rows += belt_rows(case, wall)
         if wall.servo is not None:
             rows.append(word("walls", f"{wall.name}: presses with", servo_text(wall.servo), "servo"))
     return rows

@@ -29,7 +29,8 @@ class WallForces(Averaged):
     force : of the grains on each wall [N], shape (n, n_wall, 3).
     torque : about the axis point of each wall [N m], shape (n, n_wall, 3).
     axis_point : where that point is at the begin of the window [m], shape (n_wall, 3); a wall takes it along.
-    power : that each wall gives to the grains [W], shape (n, n_wall); 0 where it does not move.
+    power : that each wall gives to the grains [W], shape (n, n_wall); 0 where neither it nor its
+        surface moves.
     contacts : mean number of contacts of each wall, shape (n, n_wall).
     travel : way of each wall along the direction of its servo [m], shape (n, n_wall); None without a servo.
     averages : of the components of each wall, those that are not zero throughout; the notes name the walls

@@ -41,7 +41,9 @@ SPIN = 19  # [rad/s], constant
 SWING = 22  # amplitude of the oscillation [m]
 RATE = 25  # its angular frequency [rad/s]
 PHASE = 26  # its phase at that time [rad]
-N_MOTION = 27
+SURFACE = 27  # velocity of the surface against the wall, as of a belt, in the frame of the wall [m/s]
+N_RIGID = 27  # columns where no surface runs, and of run folders before surfaces could
+N_MOTION = 30
 # columns of a servo; a wall without one has zeros
 TOWARDS = 0  # unit vector in which the wall presses [-]
 ASKED = 3  # force that it is to exert on the grains in this direction [N]
@@ -92,6 +94,10 @@ class Walls:
         moves = np.any(self.motion[:, VELOCITY:RATE] != 0.0, axis=1)
         return moves | (self.servo[:, ASKED] != 0.0) if len(self.servo) else moves
 
+    def running(self) -> Bools:
+        """Whether the surface of each wall runs, shape (n_wall,)."""
+        return np.any(self.motion[:, SURFACE : SURFACE + 3] != 0.0, axis=1)
+
 
 def at_rest(n_wall: int, t: float = 0.0) -> Floats:
     """Motion of walls that stay where they are, shape (n_wall, N_MOTION)."""
@@ -124,6 +130,14 @@ def pose(row: Floats, t: float) -> tuple[Floats, Floats]:
             vector[:] = turned_about(x, y, z, a, b, c, rate * since)
         shift += axis_point
     return turn, shift + drift(row, since)
+
+
+def surface_velocity(row: Floats, t: float) -> Floats:
+    """Velocity of the surface of a wall against the wall at time t [s], in the world [m/s], shape (3,).
+
+    It turns with the wall; at a contact its part along the face counts.
+    """
+    return np.asarray(pose(row, t)[0] @ row[SURFACE : SURFACE + 3])
 
 
 def drift(row: Floats, since: float) -> Floats:

@@ -14,7 +14,7 @@ from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
 from ryusa.model.traffic import NONE, Arrivals, Traffic
-from ryusa.model.walls import N_MOTION, N_SERVO
+from ryusa.model.walls import N_MOTION, N_RIGID, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 from ryusa.results.row_file import ROW, dataset_names, row_arrays, row_from, row_scalars
 
@@ -38,7 +38,7 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         file.create_dataset(name, data=np.asarray(getattr(scene, name)))
     if scene.walls is not None:
         for name in _datasets_of(scene.walls):
-            file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
+            file.create_dataset(f"walls/{name}", data=_array_of_walls(scene.walls, name))
     if scene.materials is not None:
         file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
     for name in _datasets_of_bodies(scene.bodies):
@@ -95,6 +95,14 @@ def _datasets_of(walls: Walls) -> tuple[str, ...]:
     return _WALLS if len(walls.servo) else tuple(name for name in _WALLS if name != "servo")
 
 
+def _array_of_walls(walls: Walls | None, name: str) -> np.ndarray:
+    """An array of walls as it is stored: without columns of surfaces that run where none does."""
+    array = np.asarray(getattr(walls, name))
+    return (
+        array[:, :N_RIGID] if name == "motion" and walls is not None and not walls.running().any() else array
+    )
+
+
 def _datasets_of_bodies(bodies: RigidBodies | None) -> tuple[str, ...]:
     """Arrays of clumps; their form in water where there is some, so that dry scenes keep their digest."""
     if bodies is None:
@@ -117,7 +125,7 @@ def scene_digest(scene: Scene) -> str:
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(array.astype(np.float64).tobytes())
     for name in () if scene.walls is None else _datasets_of(scene.walls):
-        digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
+        digest.update(np.ascontiguousarray(_array_of_walls(scene.walls, name), dtype=np.float64).tobytes())
     if scene.materials is not None:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
     for name in _datasets_of_bodies(scene.bodies):
@@ -253,6 +261,8 @@ def _bodies(arrays: dict[str, np.ndarray], names: list[str], n_grain: int) -> Ri
 
 def _walls(arrays: dict[str, np.ndarray], names: list[str]) -> Walls:
     """Walls from their arrays, whose numbers go to compiled code and are therefore checked."""
+    if (motion := arrays["motion"]).ndim == 2 and motion.shape[1] == N_RIGID:
+        arrays["motion"] = np.pad(motion, ((0, 0), (0, N_MOTION - N_RIGID)))
     walls = Walls(**arrays, names=tuple(str(name) for name in names))
     n, n_wall = walls.n_face, walls.n_wall
     wanted = {

@@ -33,7 +33,8 @@ def expected_speed(case: "Case") -> tuple[float, str]:
         if height > d:
             fastest = math.sqrt(2.0 * g * height * buoyant)
             return min(fastest, settling), "fall of the top layer through the free height below it"
-    walls = max((math.hypot(*one.velocity) for one in case.walls if one.velocity is not None), default=0.0)
+    moved = [(one.velocity, one.surface_velocity) for one in case.walls]
+    walls = max((math.hypot(*one) for both in moved for one in both if one is not None), default=0.0)
     if g == 0.0 and walls > 0.0:
         return walls, "speed of the fastest wall; there is no gravity"
     if isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):

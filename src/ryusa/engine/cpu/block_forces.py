@@ -22,7 +22,8 @@ from ryusa.engine.cpu.pair_batch import (
 from ryusa.engine.cpu.pair_physics import make_immersed_dashpots, make_optional_physics
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
-from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, resolve_walls
+from ryusa.engine.cpu.wall_contacts import resolve_walls
+from ryusa.engine.cpu.wall_motion import add_drift, book_walls
 from ryusa.engine.cpu.wall_shares import keep_books, share_of, take_shares
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M

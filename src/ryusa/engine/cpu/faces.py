@@ -21,7 +21,7 @@ _HELD = 64.0  # entries in the cells over the faces: long faces beside many shor
 
 # columns of CandidateArrays.met: how a grain and a face meet in this step
 GAP = 0  # separation from the grain to its mirror image in the face [m], and its diameter
-DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
+DRIFT = 4  # velocity of the mirror image, which moves with the wall and its surface [m/s]
 POINT = 7  # nearest point, in the frame of the wall [m]
 AWAY = 10  # unit normal from the face to the grain, in the world [-]
 DISTANCE = 13  # from the centre of the grain [m]

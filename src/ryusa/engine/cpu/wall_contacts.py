@@ -1,10 +1,9 @@
-"""Which of the faces near a grain it touches, and what contacts do to moving walls (design/0019).
+"""Which of the faces near a grain it touches (design/0019).
 
 Before the pairs of a block are filtered, the nearest points of all planes and faces near its grains are
 found, and of those met in one place one is kept: the others are put out of reach, and their memory goes to
 that one. Contacts whose normals are near to each other share their forces.
 """
-# ruff: noqa: E741  (l is a lane)
 
 import math
 from typing import Any
@@ -13,15 +12,16 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, WallArrays
 from ryusa.engine.cpu.contact_rows import copy_row
-from ryusa.engine.cpu.faces import in_frame, in_world, nearest_image, nearest_of_face
+from ryusa.engine.cpu.faces import in_frame, nearest_image, nearest_of_face
 from ryusa.engine.cpu.simd.prefetch import prefetch
+from ryusa.engine.cpu.wall_motion import drift_of_image, run_along
 from ryusa.engine.cpu.wall_shares import before, deepest_of_directions, share_forces
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.status import FAULT_CROSSED, FAULT_NONE
-from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW, PLACED
-from ryusa.model.walls import ON_FACE, SAME_PLACE, SPIN, TOUCHED
+from ryusa.engine.shared.wall_pose import BEFORE, MOVES, NOW, PLACED, RUNS
+from ryusa.model.walls import ON_FACE, SAME_PLACE
 
 SAME_POINT = 1e-9  # of the radius: nearest points closer than this are one, as on an edge that faces share
 ALIKE = math.cos(math.radians(45.0))  # of normals of one smooth surface between which a contact may go over
@@ -29,16 +29,6 @@ APART, BEHIND, SAME = 0, 1, 2  # how a contact stands to a face that is nearer
 UNDECIDED = -2.0  # in place of a row that takes the place of a contact
 CROWD = 24  # planes and faces near a grain
 AHEAD = 8  # faces whose numbers are asked for before they are needed
-
-
-@inner(fastmath=FAST, forceinline=True)
-def drift_of_image(
-    w: int, at: int, before: int, x: float, y: float, z: float, poses: Any
-) -> tuple[float, float, float]:
-    """Displacement of a point of a wall between two poses [m]."""
-    a = in_world(w, at, x, y, z, poses)
-    b = in_world(w, before, x, y, z, poses)
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -111,6 +101,9 @@ def _meet(
     if poses[w, MOVES] != 0.0:
         d_x, d_y, d_z = drift_of_image(w, NOW, BEFORE, c_x - r * n_x, c_y - r * n_y, c_z - r * n_z, poses)
         d_x, d_y, d_z = d_x / dt, d_y / dt, d_z / dt
+    if poses[w, RUNS] != 0.0:
+        u_x, u_y, u_z = run_along(w, s, met, poses)
+        d_x, d_y, d_z = d_x + u_x, d_y + u_y, d_z + u_z
     met[s, F.DRIFT], met[s, F.DRIFT + 1], met[s, F.DRIFT + 2] = d_x, d_y, d_z
     return 1
 
@@ -331,69 +324,3 @@ def _one_in_a_place(
                 met[s, F.GAP + a] = -(1.0 + 1e-12) * 2.0 * r * met[s, F.AWAY + a]
         else:
             met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = B.FAR, 0.0, 0.0
-
-
-@inner(fastmath=FAST, forceinline=True)
-def add_drift(face_lanes: Any, selected: Any, slot: Any, motion: Any, met: Any, batch: Any) -> None:
-    """Take the motion of walls off relative velocities in a batch; mirrored grains spin with their wall."""
-    for n in range(face_lanes[B.LANES]):
-        l = face_lanes[n]
-        s = slot[selected[l]]
-        if met[s, F.SLOT] < 0.0:  # a plane
-            continue
-        w = int(met[s, F.SLOT])
-        for a in range(3):
-            batch[B.RELATIVE_VELOCITY + 4 * l + a] -= met[s, F.DRIFT + a]
-            batch[B.SPIN_J + 4 * l + a] = motion[w, SPIN + a]
-
-
-@inner(fastmath=FAST, forceinline=True)
-def book_walls(
-    given: float, pending: float, face_lanes: Any, selected: Any, hdt: float, c: Any, i_of: Any, x_of: Any,
-    slot: Any, p: Any, motion: Any, met: Any, impulse: Any, batch: Any,
-) -> tuple[float, float]:  # fmt: skip
-    """Add the impulses on walls of the faces in a batch to those of their block, (n_wall, N_IMPULSE).
-
-    Returns `given` and `pending` with the work of walls that move over the half interval before this step,
-    and over that after it, which is booked with the next one, as that of drag [J]. The mirrored grain has the
-    velocity and the spin of the wall, which works against the force and the torque on it.
-    """
-    dt = c[P.DT]
-    for n in range(face_lanes[B.LANES]):
-        l = face_lanes[n]
-        f_x, f_y, f_z = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
-        if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
-            continue
-        t_x, t_y = batch[B.TORQUE_J + 4 * l], batch[B.TORQUE_J + 4 * l + 1]
-        t_z = batch[B.TORQUE_J + 4 * l + 2]
-        k = selected[l]
-        i, s = i_of[k], slot[k]
-        if met[s, F.SLOT] < 0.0:  # a plane
-            continue
-        w = int(met[s, F.SLOT])
-        x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
-        y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
-        z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
-        impulse[w, TOUCHED] += dt
-        impulse[w, 0] -= f_x * dt
-        impulse[w, 1] -= f_y * dt
-        impulse[w, 2] -= f_z * dt
-        impulse[w, 3] += (t_x - (y * f_z - z * f_y)) * dt
-        impulse[w, 4] += (t_y - (z * f_x - x * f_z)) * dt
-        impulse[w, 5] += (t_z - (x * f_y - y * f_x)) * dt
-        if p[w, MOVES] == 0.0:
-            continue
-        turning = t_x * motion[w, SPIN] + t_y * motion[w, SPIN + 1] + t_z * motion[w, SPIN + 2]
-        before = f_x * met[s, F.DRIFT] + f_y * met[s, F.DRIFT + 1] + f_z * met[s, F.DRIFT + 2] - turning
-        n_x, n_y, n_z, r = met[s, F.AWAY], met[s, F.AWAY + 1], met[s, F.AWAY + 2], x_of[i, 3]
-        on = drift_of_image(
-            w, AFTER, NOW,
-            met[s, F.POINT] - r * (p[w, 0] * n_x + p[w, 3] * n_y + p[w, 6] * n_z),
-            met[s, F.POINT + 1] - r * (p[w, 1] * n_x + p[w, 4] * n_y + p[w, 7] * n_z),
-            met[s, F.POINT + 2] - r * (p[w, 2] * n_x + p[w, 5] * n_y + p[w, 8] * n_z), p,
-        )  # fmt: skip
-        after = (f_x * on[0] + f_y * on[1] + f_z * on[2]) / dt - turning
-        given += hdt * before
-        pending += 0.5 * dt * after
-        impulse[w, 6] += hdt * before + 0.5 * dt * after
-    return given, pending

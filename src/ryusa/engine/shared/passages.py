@@ -34,7 +34,7 @@ from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import EventRule
 from ryusa.model.tally import N_TERM, PENDING
 from ryusa.model.wall_shape import ways_to_faces
-from ryusa.model.walls import N_IMPULSE, SPIN, WORK, pose
+from ryusa.model.walls import N_IMPULSE, SPIN, WORK, pose, surface_velocity
 
 Ints = NDArray[np.int64]
 _NO_SPRINGS = SpringEnergies(0.0, 0.0, 0.0)
@@ -166,7 +166,8 @@ def _pending_of_walls(scene: Scene, state: State, places: Ints, normal: Floats, 
         return found
     first, dt, t = scene.n_grain + scene.n_fixed + scene.n_plane, scene.dt, state.t
     face = held.j[places] - first
-    mine = np.flatnonzero((face >= 0) & walls.moving()[walls.wall[np.maximum(face, 0)]])
+    works = walls.moving() | walls.running()
+    mine = np.flatnonzero((face >= 0) & works[walls.wall[np.maximum(face, 0)]])
     i, owner, f = held.i[places][mine], walls.wall[face[mine]], on_i[mine]
     x, r = state.x[i] - state.v[i] * dt, 0.5 * scene.d[i, None]
     image = x + ways_to_faces(walls, face[mine], x, t - dt, scene.period) + r * normal[mine]
@@ -177,6 +178,10 @@ def _pending_of_walls(scene: Scene, state: State, places: Ints, normal: Floats, 
         moved = (image[its] - shift) @ turn @ later.T + shift_later - image[its]  # mirrored grains go along
         spins = torque[its] @ walls.motion[w, SPIN : SPIN + 3]
         found[w] = 0.5 * float(np.sum(f[its] * moved) - dt * spins.sum())
+        if (run := surface_velocity(walls.motion[w], t - dt)).any():
+            n = normal[mine][its]
+            along = run - (n @ run)[:, None] * n
+            found[w] += 0.5 * dt * float(np.sum(f[its] * along))
     return found
 
 

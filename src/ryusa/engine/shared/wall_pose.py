@@ -5,14 +5,16 @@ from typing import Any
 
 from ryusa.engine.shared.kernel import kernel
 from ryusa.laws.walls import swing, turned_about
-from ryusa.model.walls import AXIS_POINT, BEGIN, PHASE, RATE, SHIFT, SPIN, SWING, TURN, VELOCITY
+from ryusa.model.walls import AXIS_POINT, BEGIN, PHASE, RATE, SHIFT, SPIN, SURFACE, SWING, TURN, VELOCITY
 
 # Columns of a pose: world = turn . frame + shift, twelve numbers each.
 NOW, BEFORE, AFTER = 0, 12, 24
 AXIS = 36  # the axis point now [m]
 MOVES = 39  # 1 where the wall moves
 PLACED = 40  # 1 where the frame of the wall is not the world now
-N_POSE = 41
+RUNS = 41  # 1 where its surface runs
+RUN = 42  # velocity of the surface against the wall now, in the world [m/s]
+N_POSE = 45
 
 
 @kernel()
@@ -51,9 +53,13 @@ def set_poses(t: float, dt: float, motion: Any, poses: Any) -> None:
         for k in range(VELOCITY, RATE):
             moves = 1.0 if row[k] != 0.0 else moves
         poses[w, MOVES] = moves
+        r_x, r_y, r_z = row[SURFACE], row[SURFACE + 1], row[SURFACE + 2]
+        poses[w, RUNS] = 1.0 if r_x != 0.0 or r_y != 0.0 or r_z != 0.0 else 0.0
         pose_at(w, t, motion, poses, NOW)
         pose_at(w, t - dt, motion, poses, BEFORE)
         pose_at(w, t + dt, motion, poses, AFTER)
+        for k in range(3):
+            poses[w, RUN + k] = poses[w, 3 * k] * r_x + poses[w, 3 * k + 1] * r_y + poses[w, 3 * k + 2] * r_z
         placed = 0.0
         for k in range(12):
             placed = placed if poses[w, NOW + k] == (1.0 if k in (0, 4, 8) else 0.0) else 1.0
