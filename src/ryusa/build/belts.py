@@ -42,8 +42,8 @@ def _refuse(scene: Scene, w: int, key: str) -> None:
     if across[round_].any():
         raise CaseError(
             key, value,
-            f"runs across the axis of the cylinder '{name}', down one side and up the other: it can run along "
-            "the axis alone; a drum that turns about it has angular_velocity",
+            f"runs across the axis of the cylinder '{name}', down one side and up the other: it can run "
+            "along the axis alone; a drum that turns about it has angular_velocity",
         )  # fmt: skip
     if not (round_.any() or across.any()):
         text = f"is normal to the wall '{name}' and moves nothing: a surface runs along it"
