@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.casefile.texts import FED, SAND
 
 import ryusa
 from ryusa.build import build
@@ -19,16 +20,9 @@ from ryusa.model.traffic import Feed
 
 TRIANGLE = Course((0.0, 10.0, 20.0, 20.0, 30.0), (0.0, 1.0, 0.0, 0.5, 0.5))  # with a jump at 20 s
 
-RIVER = """
-[grains]
-diameter = "2 mm"
-density = "2650 kg/m3"
-[contact]
-stiffness = "100 N/cm"
-restitution = 0.5
-friction = 0.3
-[motion]
-rotation = "free"
+RIVER = (
+    SAND
+    + """
 plane = true
 [build]
 kind = "empty"
@@ -52,35 +46,7 @@ time = "12 s"
 frames = "0.5 s"
 {more}
 """
-
-FED = """
-[grains]
-diameter = "2 mm"
-density = "2650 kg/m3"
-[contact]
-stiffness = "100 N/cm"
-restitution = 0.5
-friction = 0.3
-[motion]
-rotation = "free"
-plane = false
-[build]
-kind = "empty"
-[[planes]]
-name = "floor"
-point = ["0 m", "0 m", "0 m"]
-normal = [0, 0, 1]
-[[feeds]]
-name = "pipe"
-centre = ["0 cm", "0 cm", "2 cm"]
-radius = "1 cm"
-velocity = ["0 m/s", "0 m/s", "-0.5 m/s"]
-{keys}
-[stop]
-time = "0.3 s"
-[record]
-frames = "20 ms"
-"""
+)
 
 
 def river(upstream='discharge = "0.01 m2/s"', downstream='level = "10 cm"', width="", more=""):

@@ -1,45 +1,16 @@
 """[[feeds]] that stop at a number or a mass of grains."""
 
 import pytest
+from tests.casefile.texts import FED
 
 import ryusa
 from ryusa.casefile.read import read_text
 from ryusa.casefile.traffic.values import fed_count, feed_end
 from ryusa.errors import CaseError
 
-CASE = """
-[grains]
-diameter = "2 mm"
-density = "2650 kg/m3"
-[contact]
-stiffness = "100 N/cm"
-restitution = 0.5
-friction = 0.3
-[motion]
-rotation = "free"
-plane = false
-[build]
-kind = "empty"
-[[planes]]
-name = "floor"
-point = ["0 m", "0 m", "0 m"]
-normal = [0, 0, 1]
-[[feeds]]
-name = "pipe"
-centre = ["0 cm", "0 cm", "2 cm"]
-radius = "1 cm"
-velocity = ["0 m/s", "0 m/s", "-0.5 m/s"]
-rate = "{rate}"
-{total}
-[stop]
-time = "0.3 s"
-[record]
-frames = "50 ms"
-"""
-
 
 def case_of(rate, total):
-    return read_text(CASE.format(rate=rate, total=f'total = "{total}"' if total else ""))
+    return read_text(FED.format(keys=f'rate = "{rate}"' + (f'\ntotal = "{total}"' if total else "")))
 
 
 @pytest.mark.parametrize(
