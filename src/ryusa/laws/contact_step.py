@@ -184,7 +184,8 @@ def tangential_step(
     Notes
     -----
     Source: the paper, Eqs. (2)-(4). In plane motion components y and z are returned unchanged. Sliding
-    dissipates the work of the interval on the spring minus the increase of the spring's energy.
+    dissipates the work of the interval on the spring minus the increase of the spring's energy; with `total`
+    that on the dashpot, too, which the spring then holds against, so that the sum is that of friction.
 
     >>> flags, normal, slip = (True, False, False, False), (0.0, 0.0, 1.0, 0.0), (-0.1, 0.0, 0.0)
     >>> before, law = (0.5, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0, 0.5)
@@ -215,8 +216,12 @@ def tangential_step(
         taken += s_y * (p_y + e_y) + s_z * (p_z + e_z)
         lost += s_y * (q_y + b_y) + s_z * (q_z + b_z)
         spent += p_y * p_y - e_y * e_y + (p_z * p_z - e_z * e_z)
-    taken = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0
-    return e_x, e_y, e_z, b_x, b_y, b_z, share, -hdt * lost, held * taken, taken - held * taken
+    taken, lost = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0, -hdt * lost
+    by_sliding = lost if total and share < held else 0.0
+    return (
+        e_x, e_y, e_z, b_x, b_y, b_z, share, lost - by_sliding, held * taken + by_sliding,
+        taken - held * taken,
+    )  # fmt: skip
 
 
 @step_law
