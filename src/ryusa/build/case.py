@@ -57,6 +57,7 @@ from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.shape import extent, has_clumps
 from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
+from ryusa.casefile.without_effect import notes_without_effect
 from ryusa.errors import CaseError
 from ryusa.laws.families import (
     Above,
@@ -160,7 +161,8 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     pressed = refuse_crushing_servos(scene)
     gone = refuse_grains_beyond_exits(scene, state)
     refuse_full_feeds(case, scene)
-    return Built(scene, state, (*placement.notes, *passed, *pressed, *gone, *notes_of(case)))
+    said = (*placement.notes, *passed, *pressed, *gone, *notes_without_effect(case), *notes_of(case))
+    return Built(scene, state, said)
 
 
 def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:

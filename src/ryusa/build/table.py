@@ -1,5 +1,6 @@
 """First grains from a table, a file of another program or a frame of another run."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,10 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.errors import CaseError
 from ryusa.formats.grains import GrainTable
+from ryusa.laws.drag import volume
 from ryusa.model.scene import Floats
+
+_SAME = 1e-6  # relative difference of masses that are one
 
 
 def table(case: Case, _derived: Derived) -> Placement:
@@ -70,7 +74,7 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
 
 
 def _notes(case: Case, run: str | None, grid: GrainTable, heavy: Floats | None) -> tuple[str, ...]:
-    notes = list(grid.notes)
+    notes = [*grid.notes, *_unused(case, run, grid)]
     if heavy is not None:
         low, high = heavy[~grid.fixed].min(), heavy[~grid.fixed].max()
         shown = f"{low:.4g}" if high - low < 1e-4 * high else f"{low:.4g} to {high:.4g}"
@@ -86,6 +90,20 @@ def _notes(case: Case, run: str | None, grid: GrainTable, heavy: Floats | None) 
         where = f"at z = {grid.z_zero:g} m, as in {grid.name}" if grid.z_zero is not None else "at z = 0"
         notes.append(f"zero of the water profile {where} (water.zero not given)")
     return tuple(notes)
+
+
+def _unused(case: Case, run: str | None, grid: GrainTable) -> Iterator[str]:
+    """What a file says of its grains and a run does not take."""
+    moving = [name for name in ("vx", "vy", "vz", "wx", "wy", "wz") if np.any(grid.column(name)[grid.fixed])]
+    if moving:
+        yield f"{', '.join(moving)} of the fixed grains of {grid.name} are not used: they never move"
+    masses = np.any(grid.column("m"))
+    if masses and np.any(grid.column("density")):
+        yield f"masses of {grid.name} are not used: it states densities too"
+    if run is not None and masses and not case.materials:
+        ours = np.array([case.grains.density * volume(d, case.grains.shape_volume) for d in grid.column("d")])
+        if not np.allclose(grid.column("m")[~grid.fixed], ours[~grid.fixed], rtol=_SAME, atol=0.0):
+            yield f"masses of the grains of {run} are not used: grains.density and shape_volume give them"
 
 
 def _columns(*columns: Floats) -> Floats:

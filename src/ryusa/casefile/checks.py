@@ -34,6 +34,7 @@ from ryusa.casefile.traffic.checks import check_traffic
 from ryusa.casefile.walls import check_meshes, check_walls
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
+from ryusa.casefile.without_effect import check_without_effect
 from ryusa.errors import CaseError
 
 RIVALS: dict[str, tuple[tuple[str, str], ...]] = {  # two keys for one thing, by section
@@ -78,6 +79,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_materials(case),
         *check_precision(case),
     ]
+    found = found or [*check_without_effect(case)]
     found = found or [*check_expected_speed(case), *check_unlike_reach(case)]
     if found:
         return found

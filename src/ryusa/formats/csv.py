@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ryusa.errors import ParseError
 from ryusa.formats.dialect import Dialect, dialect_of
 from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, UNITS, GrainTable, PlaneWall
-from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened
+from ryusa.formats.names import not_used
+from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened, shown
 from ryusa.model.arrays import Floats
 from ryusa.units import UnitError, quantity
 
@@ -99,8 +100,10 @@ def read_csv(path: Path, name: str, frame: int | None = None) -> GrainTable:
         if frame is not None and frame >= n_frame:
             raise lines.error(f"build.frame = {frame}: the file has frames 0 to {n_frame - 1}")
         notes = lines.notes
+    turns = [] if "clump" in names else [one for one in names if one in TURN]  # of spheres
+    more = not_used(name, turns) + not_used(name, about.pop("others", ()), "entries of the line '# ryusa'")
     made = Rows(name, rows, dialect.column, dialect.split, dialect.number)
-    return replace(_table(made, heads, about), notes=notes)
+    return replace(_table(made, heads, about), notes=(*notes, *more))
 
 
 def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]], Dialect]:
@@ -150,7 +153,9 @@ def _about(lines: Lines) -> dict[str, Any]:
         )
         if area is not None and area <= 0.0:
             raise ValueError("bed_area")
+        known = ("period", "planes", "water_zero", "bed_area")
         return {
+            "others": [shown(one) for one in given if one not in known],
             "period": period,
             "planes": tuple(planes),
             "z_zero": zero,

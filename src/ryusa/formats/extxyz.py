@@ -71,6 +71,8 @@ _READ = {  # property: columns of a table
     **dict.fromkeys(("omega", "angular_velocity"), ("wx", "wy", "wz")),
 }
 _WITHOUT_USE = {"species", "id", "fixed", "image"}  # of which nothing need be said
+# keys of the line that describes a frame; of those that are not read nothing need be said
+_KEYS = {"lattice", "properties", "pbc", "origin", "time", "step", "units"}
 _PERIODIC = {"t": True, "true": True, "1": True, "f": False, "false": False, "0": False}
 
 
@@ -128,6 +130,8 @@ def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]
         columns = _READ.get(word, (word,) if word in {"id", "fixed"} else (size[0],) if size else ())
         if columns and len(columns) != int(count):
             raise wrong("properties", f"expected {len(columns)} columns of '{known}', found {int(count)}")
+        if any(column in words for column in columns):  # a radius beside a diameter
+            unused.append(known)
         for j, column in enumerate(columns):
             words.setdefault(column, width + j)
         if size is not None:
@@ -157,6 +161,7 @@ def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]
         notes=(
             *notes,
             *not_used(rows.name, unused),
+            *not_used(rows.name, (found[1] for key, found in keys.items() if key not in _KEYS), "keys"),
             *open_in_z(rows.name, shut_above),
             *(
                 (f"{rows.name} has a Lattice but no pbc: its sides are taken as open",)

@@ -8,10 +8,14 @@ import numpy as np
 
 from ryusa.errors import ParseError
 from ryusa.formats.grains import GrainTable
+from ryusa.formats.names import not_used
 from ryusa.formats.text import Lines, ReadOptions, Rows, checked, opened, shown
 
 _SKIPPED = {"Masses", "Pair Coeffs", "PairIJ Coeffs", "Atom Type Labels"}
+_OF_HEAD = {"xlo xhi", "ylo yhi", "zlo zhi", "xy xz yz", "atom types"}  # of which nothing need be said
 _VELOCITIES = {"vx": 1, "vy": 2, "vz": 3, "wx": 4, "wy": 5, "wz": 6}
+_WIDTH = 1 + len(_VELOCITIES)  # words of a row of velocities
+_UNUSED = {"molecule", "charge", "dipole_x", "dipole_y", "dipole_z"}  # words of a row of atoms
 _IMAGES = 3  # words that may follow those of a row
 
 
@@ -45,9 +49,10 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
     """Read the grains of a data file. It does not say which sides are periodic, so the case must."""
     atoms: Rows | None = None
     speeds: Rows | None = None
+    skipped = list[str]()
     with opened(path, name) as lines:
         lines.need("the title of a data file of LAMMPS")
-        n, section = _head(lines)
+        n, section, others = _head(lines)
         style = _STYLES["sphere"]
         while section:
             if section == "Atoms":
@@ -56,14 +61,21 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
                 _check_words(atoms, style)
             elif section == "Velocities":
                 speeds = _block(lines, n)
+                _check_speeds(speeds)
             elif section in _SKIPPED:
                 _skip(lines)
+                skipped.append(section)
             else:
                 raise lines.error(f"expected Atoms or Velocities, found the section {shown(section)}")
             section = _next_section(lines)
         if atoms is None:
             raise lines.error("the file ends; expected the section Atoms")
-        notes = lines.notes
+        notes = (
+            *lines.notes,
+            *not_used(name, (one for one in style.words if one in _UNUSED)),
+            *not_used(name, skipped, "sections"),
+            *not_used(name, others, "lines of the head"),
+        )
     ids = atoms.integers(style.place("id"), "an id")
     places = {one: style.place(one) for one in ("d", "density", "x", "y", "z")}
     values = atoms.columns(list(places.values()), [f"'{one}' of atom_style {style.name}" for one in places])
@@ -82,9 +94,9 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
     return checked(table, atoms, {**places, "id": style.place("id")})
 
 
-def _head(lines: Lines) -> tuple[int, str]:
-    """Number of grains, and the name of the first section."""
-    n = 0
+def _head(lines: Lines) -> tuple[int, str, list[str]]:
+    """Number of grains, the name of the first section, and the lines that are not used."""
+    n, others = 0, list[str]()
     while lines.advance():
         text = lines.text.partition("#")[0].strip()
         if not text:
@@ -92,7 +104,7 @@ def _head(lines: Lines) -> tuple[int, str]:
         if text[0].isalpha():
             if n < 1:
                 raise lines.error("expected the number of atoms before the first section")
-            return n, _section(lines)
+            return n, _section(lines), others
         words = text.split()
         numbers = list(takewhile(_is_number, words))
         about = " ".join(words[len(numbers) :])
@@ -104,6 +116,8 @@ def _head(lines: Lines) -> tuple[int, str]:
             raise lines.error("expected a box along x, y and z, with xlo xhi, ylo yhi and zlo zhi")
         elif not numbers or not about:
             raise lines.error(f"expected a line such as '100 atoms', found {shown(text)}")
+        elif about not in _OF_HEAD and any(float(one) for one in numbers):
+            others.append(shown(text))
     raise lines.error("the file ends; expected the section Atoms")
 
 
@@ -148,6 +162,13 @@ def _check_words(atoms: Rows, style: _Style) -> None:
                 f"{n + _IMAGES} with image flags, found {found}: write the file with atom_style sphere, or "
                 "name its style behind 'Atoms #'",
             )  # fmt: skip
+
+
+def _check_speeds(speeds: Rows) -> None:
+    """Refuse rows of more than the velocity and the spin of a sphere."""
+    for row, (_, text) in enumerate(speeds.where):
+        if (found := len(text.partition("#")[0].split())) > _WIDTH:
+            raise speeds.error(row, _WIDTH, f"expected {_WIDTH} words: id vx vy vz wx wy wz, found {found}")
 
 
 def _next_section(lines: Lines) -> str:

@@ -22,10 +22,10 @@ def meaning_of(name: str) -> tuple[str, float] | None:
     return _MEANINGS.get(word) or _MEANINGS.get(_PREFIX.sub("", word))
 
 
-def not_used(file: str, columns: Iterable[str]) -> tuple[str, ...]:
+def not_used(file: str, columns: Iterable[str], what: str = "columns") -> tuple[str, ...]:
     """What is said of the columns of a file that a case has no use for; nothing where there are none."""
     names = ", ".join(dict.fromkeys(columns))
-    return (f"columns of {file} that are not used: {names}",) if names else ()
+    return (f"{what} of {file} that are not used: {names}",) if names else ()
 
 
 def open_in_z(file: str, periodic: bool) -> tuple[str, ...]:

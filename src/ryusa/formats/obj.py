@@ -11,6 +11,8 @@ import numpy as np
 from ryusa.errors import ParseError
 from ryusa.model.arrays import Floats
 
+_CURVED = {"cstype", "curv", "curv2", "surf"}  # statements of curves and surfaces that are no triangles
+
 
 def read_obj(path: Path, name: str) -> Floats:
     """Corners of the triangles of an OBJ file, in the unit of the file, shape (n, 3, 3).
@@ -25,7 +27,7 @@ def read_obj(path: Path, name: str) -> Floats:
     Raises
     ------
     ParseError : a vertex without three numbers, a face with fewer than three corners or a corner that is not
-        there, or a polygon that cannot be cut from one of its corners.
+        there, a polygon that cannot be cut from one of its corners, or a curved surface.
     """
     vertices: list[tuple[float, float, float]] = []
     polygons: list[list[int]] = []
@@ -36,6 +38,11 @@ def read_obj(path: Path, name: str) -> Floats:
         elif words[0] == "f":
             polygons.append(_polygon(words, len(vertices), name, number))
             lines.append(number)
+        elif words[0] in _CURVED:
+            text = (
+                f"holds a curved surface ('{words[0]}'), which is not read; export it as a mesh of triangles"
+            )
+            raise ParseError(name, number, 1, text)
     points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
     for polygon, number in zip(polygons, lines, strict=True):
         if max(polygon) >= len(points):

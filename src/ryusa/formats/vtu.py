@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
 from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, GrainTable
+from ryusa.formats.names import not_used
 from ryusa.formats.text import D_HIGH, D_LOW, LARGEST, shown
 
 _TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
@@ -97,6 +98,12 @@ _READ = {  # array: its type and width, 0 for one number a grain
 }
 
 
+# arrays that ryusa writes beside these, of which nothing need be said
+_BESIDE = {
+    "period", "clump", "orientation", "image", "TimeValue", "step", "connectivity", "offsets", "types",
+}  # fmt: skip
+
+
 @dataclass
 class _Stored:
     """A data array of the file, not yet decoded."""
@@ -155,6 +162,7 @@ def read_vtu(path: Path, name: str) -> GrainTable:
         labels=tuple(f"{one} of {name}" for one in ids.tolist()),
         ids=ids,
         period=(period[0], period[1]),
+        notes=not_used(name, (one for one in stored if one not in _READ and one not in _BESIDE), "arrays"),
     )
 
 

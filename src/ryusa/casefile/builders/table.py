@@ -1,6 +1,7 @@
 """First grains that a file holds: a table, a file of another program, or a frame of another run."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -13,15 +14,17 @@ from ryusa.casefile.files import contents, folder_of, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError, ResultsError
-from ryusa.formats.grains import GrainTable
+from ryusa.formats.grains import UNITS, GrainTable
 from ryusa.formats.read import read_grains
 from ryusa.formats.text import ReadOptions
 from ryusa.laws.drag import volume
+from ryusa.laws.families import Profile
 from ryusa.model.arrays import Floats
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+    from ryusa.results import Results
 
 _SAME = 1e-9  # relative difference of densities that are one
 _LIGHTEST, _HEAVIEST = 1.0, 1.0e5  # densities of a grain [kg/m3]
@@ -84,11 +87,23 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
         note = f"masses of {table.name} are not used: their unit is not known (build.mass_unit not given)"
         columns = {name: one for name, one in table.columns.items() if name not in heavy}
         table = replace(table, columns=columns, notes=(*table.notes, note))
+    table = replace(table, notes=(*table.notes, *_units_not_needed(build, table)))
     if "d" in table.columns:
         return table
     d = reference_diameter(case)
     note = f"{table.name} states no sizes (radius, diameter, ...): all grains have d = {1000.0 * d:.4g} mm"
     return replace(table, columns={**table.columns, "d": np.full(table.n, d)}, notes=(*table.notes, note))
+
+
+def _units_not_needed(build: TableSection, table: GrainTable) -> Iterator[str]:
+    """Units that a case gives and no column of its file needs."""
+    if build.format in {"csv", "vtu"}:
+        return
+    kinds = {UNITS[one] for one in table.columns if one in UNITS}
+    for key, needing in (("time_unit", {"m/s", "rad/s"}), ("mass_unit", {"kg", "kg/m3"})):
+        if given(build, key) and not kinds & needing:
+            what = "velocities and spins" if key == "time_unit" else "masses and densities"
+            yield f"build.{key} has no effect: {table.name} states no {what}"
 
 
 def densities_of_file(case: "Case") -> Floats | None:
@@ -145,6 +160,17 @@ def _table_of_run(case: "Case", key: str, name: str, at: float | None) -> GrainT
     return _frame(path, key, name, at, changed)
 
 
+def _left_behind(run: "Results", name: str) -> Iterator[str]:
+    """What another run has beside its grains, periods and planes: a case has to state it anew."""
+    scene = run.scene
+    there = {
+        "walls": scene.walls is not None, "feeds and exits": scene.traffic is not None,
+        "materials": scene.materials is not None, "water": scene.water.profile is not Profile.NONE,
+    }  # fmt: skip
+    if what := ", ".join(one for one, is_there in there.items() if is_there):
+        yield f"not taken from {name}: its {what}, of which this case says its own"
+
+
 @lru_cache(maxsize=4)
 def _frame(path: Path, key: str, name: str, at: float | None, _changed: int) -> GrainTable:
     from ryusa.formats.grains import nearest_frame, table_of_frame
@@ -156,6 +182,7 @@ def _frame(path: Path, key: str, name: str, at: float | None, _changed: int) -> 
             raise ResultsError(f"{path}: has no frame yet")
         if run.scene.bodies is not None:
             raise ResultsError(f"{path}: holds clumps, and a frame gives single spheres only")
-        return table_of_frame(run, len(run.frames) - 1 if at is None else nearest_frame(run, at))
+        table = table_of_frame(run, len(run.frames) - 1 if at is None else nearest_frame(run, at))
+        return replace(table, notes=(*table.notes, *_left_behind(run, name)))
     except ResultsError as error:
         raise CaseError(key, name, str(error)) from None
