@@ -21,6 +21,7 @@ from ryusa.casefile.read import json_schema
 from ryusa.errors import CaseError
 from ryusa.laws.families import Drag, Lift, Profile
 from ryusa.model.scene import EventRule
+from ryusa.model.walls import PHASE, SWING
 
 SCHEMA = json_schema()
 Data = dict[str, Any]
@@ -243,6 +244,10 @@ def outcome(case: Case) -> Outcome:
     built, rows = build(case), explain(case)
     scene, wet = built.scene, built.scene.water
     parts = _plain({"scene": scene, "state": built.state})
+    if scene.walls is not None:  # a phase is of an oscillation
+        motion = scene.walls.motion.copy()
+        motion[(motion[:, SWING : SWING + 3] == 0.0).all(axis=1), PHASE] = 0.0
+        parts["scene"]["walls"]["motion"] = _plain(motion)
     unread: list[str] = []
     if scene.events is not EventRule.TRACKED and case.stop.saltations is None:
         unread.append("tracked")

@@ -57,7 +57,7 @@ MOST, ENOUGH = 12, 4  # values tried of a key, and of those that are taken and c
 SMALL = ["-1 cm", "-1 cm", "1.4 cm"]  # of the silo, so that few grains are laid
 NAMED = ("title", "name")  # what pictures, tables and messages call a thing
 MATERIAL = ("material", "bed_material")  # where "grains" is what holds without the key
-QUICK = ("drop", "box", "saltation", "weir", "table")
+QUICK = ("single", "drop", "box", "quiet", "saltation", "flat", "weir", "table", "plain")
 NEVER = {  # always refused
     "water.row.upstream.stage",
     *(f"water.row.downstream.{one}" for one in ("depth", "discharge", "hydrograph", "profile", "run")),
@@ -72,6 +72,13 @@ OF_RUNS = {
 
 CASES: dict[str, tuple[str, Data]] = {
     "drop": ("drop", {"build.copies": 2, "build.height_step": "1 mm", "motion.rotation": "free"}),
+    "single": ("drop", {}),
+    "quiet": (
+        "heap",
+        {"build.columns": 4, "build.layers": 2, "motion.gravity": "0 m/s2", "contact.expected_speed": None},
+    ),
+    "flat": ("movable_bed", {"build.columns": 8, "build.layers": 2, "build.bed": "flat"}),
+    "plain": ("flume", {"build.plate": "2 cm", "walls": [{**WALL, "sides": SIDES}]}),
     "oblique": ("drop", {"build.offset": "0.5 mm", "contact.slip": "spring", "build.copies": 2}),
     "box": (
         "box",

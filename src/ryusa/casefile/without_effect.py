@@ -263,8 +263,11 @@ def _acts_on_water(case: "Case", key: str) -> bool:
     if key == "water.row.width":  # of a discharge of the whole width, and of grains
         ends = [] if case.water is None or case.water.row is None else [case.water.row.upstream]
         every = [one.discharge for one in (*ends, *case.timeline) if one is not None]
-        flood = any(one is not None and one.hydrograph is not None for one in ends)
-        return flood or any(one is not None and one[1] == "m3/s" for one in every)
+        flood = [one.hydrograph for one in ends if one is not None and one.hydrograph is not None]
+        if any(isinstance(one, str) for one in flood):  # a file says its unit itself
+            return True
+        every += [q for one in flood if not isinstance(one, str) for _, q in one]
+        return any(one is not None and one[1] == "m3/s" for one in every)
     curve = ("grains.sieve_curve", "grains.finest", "grains.coarsest")
     if key in curve:  # D50 is the roughness
         return case.grains.diameter is None

@@ -38,7 +38,7 @@ def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow
             number("water", "settling velocity", settling, "m/s", f"of a single mean grain, drag {wet.drag}"),
             number("water", "grain Re", re, "-", "settling velocity times d/nu"),
         ]
-        if case.grains.density > wet.density:
+        if case.grains.density > wet.density and derived.g > 0.0:
             rows.append(_of_natural_sand(case, derived, wet, settling))
     return [*rows, *_of_clumps(case, derived, wet)]
 
