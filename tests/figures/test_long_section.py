@@ -9,18 +9,21 @@ from ryusa.figures.long_section import long_section
 from ryusa.measure.long_section import LongSection
 
 
-@pytest.mark.parametrize(("length", "fall"), [(2.0, 0.1), (100.0, 20.0), (0.2, 0.3)])
-def test_the_exaggeration_is_that_of_the_picture(length: float, fall: float) -> None:
-    n = 20
-    x = (np.arange(n) + 0.5) * length / n
-    bottom, level = fall * (1.0 - x / length), np.full(n, 0.0)
+def section(x, bottom, floor, bed, surface, dams=()):
+    """A long section of still water."""
     names = ("speed", "froude", "discharge", "critical", "tau", "volume", "solid_discharge",
              "transport_concentration", "concentration")  # fmt: skip
-    found = LongSection(
-        t=1.0, slope=0.0, x=x, bottom=bottom, floor=bottom, bed=bottom, surface=bottom + 0.1 * fall,
-        depth=np.full(n, 0.1 * fall), energy=bottom + 0.2 * fall, dams=(), **dict.fromkeys(names, level),
+    return LongSection(
+        t=1.0, slope=0.0, x=x, bottom=bottom, floor=floor, bed=bed, surface=surface, depth=surface - bed,
+        energy=surface, dams=dams, **dict.fromkeys(names, np.zeros(len(x))),
     )  # fmt: skip
-    figure = long_section(found)
+
+
+@pytest.mark.parametrize(("length", "fall"), [(2.0, 0.1), (100.0, 20.0), (0.2, 0.3)])
+def test_the_exaggeration_is_that_of_the_picture(length: float, fall: float) -> None:
+    x = (np.arange(20) + 0.5) * length / 20
+    bottom = fall * (1.0 - x / length)
+    figure = long_section(section(x, bottom, bottom, bottom, bottom + 0.1 * fall))
     figure.canvas.draw()
     axes = figure.axes[0]
     (said,) = [
@@ -32,3 +35,17 @@ def test_the_exaggeration_is_that_of_the_picture(length: float, fall: float) -> 
     number = re.search(r"[0-9.]+(e[+-][0-9]+)?", said)
     assert (float(number[0]) if number else 1.0) == pytest.approx(times, rel=0.06)
     assert axes.get_xlim() == pytest.approx((0.0, length))
+
+
+def test_the_surface_is_drawn_over_a_bed_and_up_to_the_faces_of_a_dry_dam() -> None:
+    x = np.arange(20) + 0.5
+    bottom, dam = np.zeros(20), (x > 10.0) & (x < 12.0)
+    floor = np.where(dam, 2.0, 0.0)
+    bed, surface = np.where(x < 5.0, 0.3, floor), np.where(dam, floor, 1.0)
+    figure = long_section(section(x, bottom, floor, bed, surface, dams=(("dam", 10.0, 12.0),)))
+    (line,) = (one for one in figure.axes[0].lines if one.get_label() == "surface")
+    factor = 1.0 if "(m)" in figure.axes[0].get_ylabel() else 100.0
+    at, z = line.get_xydata().T
+    assert np.nanmin(z) == np.nanmax(z) == pytest.approx(factor)
+    wet = at[np.isfinite(z)]
+    assert wet[wet < 11.0].max() == 10.0 and wet[wet > 11.0].min() == 12.0

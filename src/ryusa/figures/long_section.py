@@ -134,8 +134,8 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     wet = surface > floor  # a dry dam has its surface on its crest
     lines = [_to_the_ends(line, wet[1:] & wet[:-1]) for line in (x, bottom, surface)]  # up to its faces
     lines[0][:, [0, 2]] = np.clip(np.column_stack([x - 0.5 * step, x + 0.5 * step]), x[0], x[-1])
-    along, low_of, high_of = (np.where(wet[:, None], one, np.nan).ravel() for one in lines)
-    axes.fill_between(along, low_of, high_of, color=WATER, alpha=0.22, lw=0.0)
+    along, under, top = (np.where(wet[:, None], one, np.nan).ravel() for one in lines)
+    axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
         level = np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)  # not over the face of a dam
@@ -148,7 +148,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     for name, first, end in found.dams:
         _dam(axes, name, first, end, x, step, bottom, floor)
     axes.plot(x, bottom, color="#5a4a2f", lw=0.9)
-    axes.plot(along, high_of, color=WATER, lw=1.2, label="surface")
+    axes.plot(along, top, color=WATER, lw=1.2, label="surface")
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
     flows = np.where(wet & (found.critical > THIN), critical, np.nan)
