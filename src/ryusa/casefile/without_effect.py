@@ -70,14 +70,6 @@ def check_without_effect(case: "Case") -> Found:
 
 def _builder(case: "Case") -> Found:
     build = case.build
-    if (
-        isinstance(build, PackingSection | FlumeSection)
-        and build.bed != "random"
-        and given(build, "bed_height")
-    ):
-        what = "whose grains lie at one height" if build.bed == "flat" else "which has no grains"
-        text = f"has no effect with bed '{build.bed}', {what}; it is for 'random'"
-        yield CaseError("build.bed_height", build.bed_height, text)
     if isinstance(build, FlumeSection) and case.motion.plane and given(build, "walls"):
         text = "has no effect in a plane scene, which has no side walls"
         yield CaseError("build.walls", build.walls, text)
@@ -228,6 +220,13 @@ def notes_without_effect(case: "Case") -> tuple[str, ...]:
                 notes.append(f"grains.{key} has no effect: no grain is drawn with the sizes of [grains]")
     if getattr(build, "gap", None) == 0.0 and given(build, "jitter") and getattr(build, "jitter", 0.0) > 0.0:
         notes.append("build.jitter has no effect with build.gap = 0, of which it is a fraction")
+    if (
+        isinstance(build, PackingSection | FlumeSection)
+        and build.bed != "random"
+        and given(build, "bed_height")
+    ):
+        what = "whose grains lie at one height" if build.bed == "flat" else "which has no grains"
+        notes.append(f"build.bed_height has no effect with bed '{build.bed}', {what}; it is for 'random'")
     if record.tracked and events_of(case) == "all" and case.stop.saltations is None:
         notes.append("record.tracked has no effect: contacts of all grains are recorded (record.events)")
     if isinstance(build, FillSection) and build.most is not None:

@@ -216,6 +216,7 @@ def tangential_step(
         taken += s_y * (p_y + e_y) + s_z * (p_z + e_z)
         lost += s_y * (q_y + b_y) + s_z * (q_z + b_z)
         spent += p_y * p_y - e_y * e_y + (p_z * p_z - e_z * e_z)
+    spent = spent if hdt > 0.0 else 0.0  # springs held in the first step belong to the start
     taken, lost = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0, -hdt * lost
     by_sliding = lost if total and share < held else 0.0
     return (
