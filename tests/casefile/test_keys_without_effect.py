@@ -682,7 +682,6 @@ def test_no_key_is_silent_anywhere(folder: Path, name: str) -> None:
 REFUSED: list[tuple[str, Data, str]] = [
     ("drop", {"build.copies": 1}, "build.height_step"),
     ("table", {"build.mass_unit": "g"}, "build.mass_unit"),
-    ("stream", {"build.bed": "0 cm"}, "build.begin"),
     ("walls", {"walls.0.phase": "10 deg"}, "walls.0.phase"),
     (
         "walls",
@@ -708,6 +707,7 @@ REFUSED: list[tuple[str, Data, str]] = [
 ]
 SAID: list[tuple[str, Data, str]] = [
     ("drop", {"seed": 3}, "seed has no effect"),
+    ("stream", {"build.bed": "0 cm"}, "build.begin, build.end"),
     ("packing", {"build.bed": "flat", "build.bed_height": 0.2}, "build.bed_height has no effect"),
     ("flume", {"build.bed": "plane", "build.bed_height": 0.2}, "build.bed_height has no effect"),
     ("weir", {}, "contact.stiffness"),

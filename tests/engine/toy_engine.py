@@ -123,9 +123,11 @@ class ToyEngine:
         share, less, _ = slide(float(np.linalg.norm(spring + drag)), tau_c, False, True)
         share *= f_n > 0.0
         spring = (share * spring + less * drag) * (f_n > 0.0)
-        work[Term.DASH_S] -= hdt * float(slip @ (dash + drag))
+        slides = share < 1.0 and f_n > 0.0  # the work of friction is that of spring and dashpot together
+        work[Term.SLIDE if slides else Term.DASH_S] -= hdt * float(slip @ (dash + drag))
         if share < 1.0:
-            lost = 0.5 * float(old @ old - spring @ spring) / law.k_s - hdt * float(slip @ (old + spring))
+            left = 0.5 * float(old @ old - spring @ spring) / law.k_s if hdt > 0.0 else 0.0
+            lost = left - hdt * float(slip @ (old + spring))
             work[Term.SLIDE if f_n > 0.0 else Term.RELEASED_S] += lost
         force, torque = spring + drag - f_n * normal, np.cross(normal, spring + drag)
         for grain, sign, lever in ((i, 1.0, a_i), (j, -1.0, a_j))[: 2 if j < scene.n_grain else 1]:

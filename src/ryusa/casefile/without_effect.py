@@ -79,10 +79,6 @@ def _builder(case: "Case") -> Found:
     if isinstance(build, TableSection) and build.format in {"csv", "vtu"} and given(build, "mass_unit"):
         text = f"has no effect with format '{build.format}', only with lammps-dump, lammps-data, xyz"
         yield CaseError("build.mass_unit", build.mass_unit, text)
-    if isinstance(build, StreamSection) and build.bed == 0.0:
-        for key in ("begin", "end", "gap", "jitter"):
-            if given(build, key):
-                yield CaseError(f"build.{key}", getattr(build, key), "has no effect without build.bed")
 
 
 def _walls(case: "Case") -> Found:
@@ -227,6 +223,9 @@ def notes_without_effect(case: "Case") -> tuple[str, ...]:
     ):
         what = "whose grains lie at one height" if build.bed == "flat" else "which has no grains"
         notes.append(f"build.bed_height has no effect with bed '{build.bed}', {what}; it is for 'random'")
+    if isinstance(build, StreamSection) and build.bed == 0.0:
+        idle = [f"build.{key}" for key in ("begin", "end", "gap", "jitter") if given(build, key)]
+        notes += [f"{', '.join(idle)}: no effect without build.bed"] if idle else []
     if record.tracked and events_of(case) == "all" and case.stop.saltations is None:
         notes.append("record.tracked has no effect: contacts of all grains are recorded (record.events)")
     if isinstance(build, FillSection) and build.most is not None:
