@@ -1,7 +1,7 @@
 """No key of a case is without effect and unsaid, and no column of a file that it reads.
 
 The walk goes over the schema itself: a key that is added is in it. If `test_every_key_acts_somewhere` names
-one, give it to a case of `CASES` in which it acts.
+one, give it to a case of walked_cases.toml in which it acts.
 """
 
 import re
@@ -23,38 +23,7 @@ from ryusa.formats.mesh import read_mesh
 from ryusa.formats.vtu import read_vtu, vtu_file
 
 PACKAGED = {name: path.read_text(encoding="utf-8") for name, path in case_files().items()}
-HERTZ = {
-    "law": "Hertz-Mindlin",
-    "youngs_modulus": "50 MPa",
-    "restitution": 0.7,
-    "friction": 0.5,
-    "adhesion": "DMT",
-    "work_of_adhesion": "0.05 J/m2",
-}
-WALL = {"name": "plate", "shape": "rectangle", "at": ["0 cm", "0 cm", "3 cm"]}
-SIDES = [["3 cm", "0 cm", "0 cm"], ["0 cm", "3 cm", "0 cm"]]
-SMOOTH = {"friction": 0.2, "restitution": 0.6, "density": "2000 kg/m3", "rolling_coefficient": 0.05}
-PAIR = {"materials": ["grains", "smooth"], "friction": 0.3, "restitution": 0.5, "rolling_coefficient": 0.02}
-MIXED: Data = {
-    "materials": {"smooth": SMOOTH},
-    "pairs": [PAIR],
-    "grains.mixture": {"smooth": 0.3},
-    "contact.friction": 0.5,
-    "contact.timing": "exact",
-    "rolling.model": "constant",
-    "rolling.coefficient": 0.1,
-    "build.most": 8,
-    "planes": [{"name": "under", "point": ["0 cm", "0 cm", "-5 cm"], "normal": [0, 0, 1]}],
-}
-BLOWN: Data = {
-    "water.drag": "constant",
-    "water.drag_coefficient": 0.5,
-    "water.torque": "Dennis",
-    "motion.rotation": "free",
-    "motion.slope": "1/20",
-}
 MOST, ENOUGH = 12, 4  # values tried of a key, and of those that are taken and change nothing
-SMALL = ["-1 cm", "-1 cm", "1.4 cm"]  # of the silo, so that few grains are laid
 NAMED = ("title", "name")  # what pictures, tables and messages call a thing
 MATERIAL = ("material", "bed_material")  # where "grains" is what holds without the key
 QUICK = ("single", "drop", "box", "quiet", "saltation", "flat", "weir", "table", "plain")
@@ -70,457 +39,7 @@ OF_RUNS = {
     "water.row.upstream.run",
 }
 
-CASES: dict[str, tuple[str, Data]] = {
-    "drop": ("drop", {"build.copies": 2, "build.height_step": "1 mm", "motion.rotation": "free"}),
-    "single": ("drop", {}),
-    "quiet": (
-        "heap",
-        {"build.columns": 4, "build.layers": 2, "motion.gravity": "0 m/s2", "contact.expected_speed": None},
-    ),
-    "flat": ("movable_bed", {"build.columns": 8, "build.layers": 2, "build.bed": "flat"}),
-    "plain": ("flume", {"build.plate": "2 cm", "walls": [{**WALL, "sides": SIDES}]}),
-    "oblique": ("drop", {"build.offset": "0.5 mm", "contact.slip": "spring", "build.copies": 2}),
-    "box": (
-        "box",
-        {
-            "grains.spread": {"kind": "uniform", "ratio": 0.1},
-            "build.floor_height": 0.1,
-            "build.drop": "3 cm",
-            "build.run_out": "1 cm",
-            "record.events": "tracked",
-            "record.tracked": [1],
-            "stop.rest": {"speed": "1 mm/s", "for": "0.1 s"},
-            "timeline": [
-                {"at": "0.2 s", "remove": "gate"},
-                {"at": "0.3 s", "slope": 0.1},
-                {"at": "0.35 s", "slope_angle": "3 deg"},
-                {"at": "0.4 s", "rotation": "locked"},
-                {"at": "0.45 s", "friction": 0.2},
-                {"at": "0.46 s", "friction_angle": "9 deg"},
-            ],
-        },
-    ),
-    "space": (
-        "box",
-        {
-            "motion.plane": False,
-            "build.rows": 4,
-            "build.columns": 3,
-            "build.layers": 2,
-            "build.floor": "plane",
-            "build.walls": "planes",
-        },
-    ),
-    "sheet": (
-        "movable_bed",
-        {
-            "motion.plane": False,
-            "build.rows": 4,
-            "build.columns": 4,
-            "build.layers": 2,
-            "build.periodic": False,
-            "water": None,
-        },
-    ),
-    "springs": ("box", {"contact.stiffness": {"overlap": 0.01, "speed": "0.5 m/s"}, "build.layers": 2}),
-    "slow": ("box", {"contact.stiffness": {"collision_time": "0.1 ms"}, "build.layers": 2}),
-    "dashpots": (
-        "box",
-        {
-            "contact.damping": "0.001 N s/cm",
-            "contact.shear_damping": "0.001 N s/cm",
-            "contact.restitution": None,
-        },
-    ),
-    "hertz": (
-        "box",
-        {"contact": HERTZ, "rolling.model": "spring-dashpot-slider", "rolling.coefficient": 0.1},
-    ),
-    "sticky": ("box", {"contact.adhesion": "constant", "contact.pull_off_force": "1 mN"}),
-    "area": (
-        "box",
-        {
-            "contact": {
-                **{k: v for k, v in HERTZ.items() if k != "work_of_adhesion"},
-                "adhesion": "contact area",
-                "adhesion_density": "10 kPa",
-            }
-        },
-    ),
-    "saltation": ("saltation", BLOWN | {"build.start_speed": "0.1 m/s"}),
-    "davis": (
-        "saltation",
-        BLOWN | {"water.rebound": "Davis", "water.asperity": "0.01 mm", "water.rebound_least": 0.1},
-    ),
-    "stokes": ("saltation", {"water.rebound": "exponential", "water.rebound_least": 0.1}),
-    "film": ("saltation", {"water.film": "lubrication", "water.asperity": "0.01 mm"}),
-    "uniform": (
-        "saltation",
-        {
-            "water.profile": "uniform",
-            "water.speed": "0.3 m/s",
-            "water.tau_star": None,
-            "water.roughness": None,
-        },
-    ),
-    "packing": ("movable_bed", {"build.columns": 8, "build.layers": 2, "build.speed": "0.1 m/s"}),
-    "gradient": (
-        "movable_bed",
-        {
-            "build.columns": 8,
-            "build.layers": 2,
-            "water.column.drive": "pressure gradient",
-            "water.column.pressure_gradient": "50 Pa/m",
-            "water.tau_star": None,
-            "water.hindrance": "power",
-            "water.hindrance_exponent": 3.0,
-        },
-    ),
-    "flume": (
-        "bedload_3d",
-        {
-            "build.length": "9.6 cm",
-            "build.layers": 2.0,
-            "build.waves": 1,
-            "build.wave_height": "1 mm",
-            "water.column.side_walls": "2 cm",
-            "stop.time": "60 s",
-            "stop.precision": {"q": "2 %"},
-        },
-    ),
-    "discharge": (
-        "bedload_3d",
-        {
-            "build.length": "4.8 cm",
-            "build.layers": 1.0,
-            "water.column.drive": "discharge",
-            "water.column.discharge": "0.05 m2/s",
-        },
-    ),
-    "mixture": ("hopper", MIXED | {"build.high": SMALL}),
-    "kinds": (
-        "hopper",
-        {
-            "contact": {
-                "law": "Hertz-Mindlin",
-                "youngs_modulus": "50 MPa",
-                "restitution": 0.7,
-                "friction": 0.5,
-                "adhesion": "constant",
-                "pull_off_force": "1 mN",
-            },
-            "materials": {
-                "soft": {"youngs_modulus": "20 MPa", "poisson_ratio": 0.3, "pull_off_force": "2 mN"}
-            },
-            "pairs": [{"materials": ["grains", "soft"], "pull_off_force": "1 mN"}],
-            "grains.mixture": {"soft": 0.3},
-            "build.high": SMALL,
-        },
-    ),
-    "coats": (
-        "hopper",
-        {
-            "contact": HERTZ,
-            "materials": {"soft": {"work_of_adhesion": "0.1 J/m2"}},
-            "pairs": [{"materials": ["grains", "soft"], "work_of_adhesion": "0.02 J/m2"}],
-            "grains.mixture": {"soft": 0.3},
-            "build.high": SMALL,
-        },
-    ),
-    "areas": (
-        "hopper",
-        {
-            "contact": {
-                **{k: v for k, v in HERTZ.items() if k != "work_of_adhesion"},
-                "adhesion": "contact area",
-                "adhesion_density": "10 kPa",
-            },
-            "materials": {"soft": {"adhesion_density": "20 kPa"}},
-            "pairs": [{"materials": ["grains", "soft"], "adhesion_density": "5 kPa"}],
-            "grains.mixture": {"soft": 0.3},
-            "build.high": SMALL,
-        },
-    ),
-    "sizes": (
-        "hopper",
-        {
-            "materials": {
-                "fine": {"diameter": "3 mm", "spread": {"kind": "uniform", "ratio": 0.1}},
-                "curve": {"sieve_curve": [["3 mm", 0.0], ["4 mm", 100.0]]},
-            },
-            "grains.mixture": {"fine": 0.3, "curve": 0.2},
-            "build.high": SMALL,
-        },
-    ),
-    "curve": (
-        "hopper",
-        {
-            "grains.spread": None,
-            "grains.sieve_curve": [["2 mm", 0], ["4 mm", 50], ["6 mm", 100]],
-            "grains.finest": "3 mm",
-            "grains.coarsest": "5 mm",
-            "build.high": SMALL,
-        },
-    ),
-    "walls": (
-        "hopper",
-        {
-            "walls": [
-                WALL
-                | {
-                    "sides": SIDES,
-                    "servo": {
-                        "direction": [0, 0, -1],
-                        "force": "1 N",
-                        "max_speed": "1 cm/s",
-                        "max_travel": "2 cm",
-                    },
-                },
-                WALL
-                | {
-                    "name": "press",
-                    "sides": SIDES,
-                    "at": ["0 cm", "0 cm", "5 cm"],
-                    "servo": {"direction": [0, 0, -1], "pressure": "1 kPa", "max_speed": "1 cm/s"},
-                },
-                WALL
-                | {
-                    "name": "rough",
-                    "shape": "ridges",
-                    "sides": SIDES,
-                    "number": 4,
-                    "height": "1 mm",
-                    "at": ["0 cm", "0 cm", "7 cm"],
-                },
-                WALL
-                | {
-                    "name": "lid",
-                    "shape": "disc",
-                    "normal": [0, 0, 1],
-                    "radius": "2 cm",
-                    "amplitude": ["0 cm", "0 cm", "1 mm"],
-                    "frequency": "10 Hz",
-                    "phase": "10 deg",
-                    "at": ["0 cm", "0 cm", "9 cm"],
-                },
-                WALL
-                | {
-                    "name": "pipe",
-                    "shape": "cylinder",
-                    "axis": ["0 cm", "0 cm", "2 cm"],
-                    "radius": "2 cm",
-                    "angular_velocity": ["0 rpm", "0 rpm", "10 rpm"],
-                    "axis_point": ["1 cm", "0 cm", "0 cm"],
-                    "velocity": ["0 m/s", "0 m/s", "0.01 m/s"],
-                    "at": ["0 cm", "0 cm", "12 cm"],
-                },
-                {
-                    "name": "mesh",
-                    "shape": "mesh",
-                    "file": "wall.stl",
-                    "unit": "mm",
-                    "scale": 2.0,
-                    "at": ["0 cm", "0 cm", "-3 cm"],
-                    "turn_axis": [0, 0, 1],
-                    "turn_angle": "10 deg",
-                },
-            ],
-            "timeline": [
-                {
-                    "at": "0.1 s",
-                    "move": {
-                        "wall": "pipe",
-                        "velocity": ["0 m/s", "0 m/s", "0.02 m/s"],
-                        "amplitude": ["0 mm", "0 mm", "1 mm"],
-                        "frequency": "10 Hz",
-                        "phase": "10 deg",
-                        "angular_velocity": ["0 rpm", "0 rpm", "5 rpm"],
-                        "axis_point": ["1 cm", "0 cm", "0 cm"],
-                    },
-                }
-            ],
-            "build.low": ["0.5 cm", "0.5 cm", "0.5 cm"],
-            "build.high": ["1.5 cm", "1.5 cm", "1.5 cm"],
-            "exits": [],
-            "record.settle": "0 s",
-            "stop.time": "0.11 s",
-        },
-    ),
-    "period": (
-        "hopper",
-        {
-            "walls": [],
-            "exits": [],
-            "timeline": [],
-            "build.periodic": True,
-            "build.low": ["0 cm", "0 cm", "0 cm"],
-            "build.high": ["2 cm", "2 cm", "2 cm"],
-        },
-    ),
-    "heap": (
-        "gravel_heap",
-        {
-            "build.most": 10,
-            "grains.shape": {"oval": 0.3, "full": 0.4},
-            "build.plate": "2 cm",
-            "shapes": {
-                "oval": {"elongation": 0.8, "flatness": 0.9, "spheres": 9},
-                "full": {"elongation": 0.8, "flatness": 0.9, "filled": 0.95},
-            },
-            "planes.0.material": None,
-        },
-    ),
-    "body": (
-        "gravel_heap",
-        {
-            "build.most": 10,
-            "grains.shape": "stone",
-            "build.plate": "2 cm",
-            "shapes": {"stone": {"file": "body.stl", "spheres": 8}},
-        },
-    ),
-    "clumps": ("gravel_heap", {"build.most": 10, "build.plate": "2 cm", "water.profile": "still"}),
-    "feeds": (
-        "flume",
-        {
-            "feeds.0.begin": "0.1 s",
-            "feeds.0.total": "50 grains",
-            "exits.0.to": None,
-            "timeline": [{"at": "1 s", "move": {"wall": "weir", "velocity": ["0 m/s", "0 m/s", "1 mm/s"]}}],
-            "exits": [
-                {"name": "outlet", "low": ["29 cm", "-4 cm", "-1 cm"], "high": ["40 cm", "4 cm", "9 cm"]},
-                {
-                    "name": "end",
-                    "point": ["28 cm", "0 cm", "0 cm"],
-                    "normal": [1, 0, 0],
-                    "to": "feeder",
-                    "moves_with": "weir",
-                },
-            ],
-        },
-    ),
-    "discs": (
-        "flume",
-        {
-            "materials": {"smooth": {"friction_angle": "12 deg"}},
-            "pairs": [{"materials": ["grains", "smooth"], "friction": 0.3}],
-            "timeline": [{"at": "1 s", "move": {"wall": "weir", "velocity": ["0 m/s", "0 m/s", "1 mm/s"]}}],
-            "build.plate": None,
-            "feeds": [
-                {
-                    "name": "disc",
-                    "centre": ["2 cm", "0 cm", "4 cm"],
-                    "radius": "2 cm",
-                    "normal": [0, 0, -1],
-                    "rate": "50 grains/s",
-                    "end": "1 s",
-                    "velocity": ["0 m/s", "0 m/s", "-0.3 m/s"],
-                    "moves_with": "weir",
-                    "material": "smooth",
-                }
-            ],
-        },
-    ),
-    "plate": (
-        "flume",
-        {
-            "build.plate": "2 cm",
-            "walls": [],
-            "grains.bed_material": "smooth",
-            "materials": {"smooth": {"friction": 0.2}},
-            "pairs": [{"materials": ["grains", "smooth"], "friction": 0.3}],
-        },
-    ),
-    "table": (
-        "box",
-        {
-            "build": {"kind": "table", "file": "grains.csv", "frame": 0},
-            "domain.period_x": "2 cm",
-            "domain.low": ["-1 m", "-1 m", "-1 m"],
-            "grains.bed_material": None,
-        },
-    ),
-    "near": ("box", {"build": {"kind": "table", "file": "near.csv", "allow_overlap": True}}),
-    "foreign": (
-        "hopper",
-        {
-            "build": {
-                "kind": "table",
-                "file": "grains.dump",
-                "format": "lammps-dump",
-                "length_unit": "mm",
-                "time_unit": "ms",
-                "mass_unit": "g",
-                "fixed_types": [2],
-            },
-            "walls": [],
-            "timeline": [],
-            "exits": [],
-        },
-    ),
-    "open": (
-        "hopper",
-        {
-            "build": {"kind": "table", "file": "grains.csv"},
-            "domain.period_y": "5 cm",
-            "walls": [],
-            "timeline": [],
-            "exits": [],
-        },
-    ),
-    "weir": (
-        "weir",
-        {
-            "timeline": [{"at": "1 s", "discharge": "0.02 m2/s"}],
-            "water.row.height": "40 cm",
-            "water.row.dams.0.concentration": 0.6,
-            "water.row.dams.0.diameter": "5 mm",
-            "water.temperature": "15 degC",
-        },
-    ),
-    "basin": (
-        "weir",
-        {
-            "water.row.upstream": {"end": "level", "level": "22 cm"},
-            "water.depth": None,
-            "water.row.downstream": {"end": "level", "level": "4 cm"},
-            "water.row.dams.0.height": None,
-            "water.row.dams.0.crest": "8 cm",
-            "water.row.segment": None,
-            "water.row.segments": 60,
-            "water.row.surface": [["0 m", "22 cm"], ["6 m", "22 cm"]],
-        },
-    ),
-    "whole": (
-        "weir",
-        {
-            "water.row.upstream.discharge": "6 L/s",
-            "water.row.width": "20 cm",
-            "water.row.upstream.profile": "uniform",
-            "water.row.upstream.depth": "4 cm",
-        },
-    ),
-    "flood": (
-        "weir",
-        {
-            "water.row.upstream.discharge": None,
-            "water.row.downstream.level": "4 cm",
-            "water.row.downstream.end": "level",
-            "timeline": [{"at": "9 s", "level": "5 cm"}],
-            "water.row.upstream.hydrograph": [["0 s", "0.03 m2/s"], ["20 s", "0.04 m2/s"]],
-        },
-    ),
-    "tide": (
-        "weir",
-        {"water.row.downstream": {"end": "level", "stage": [["0 s", "4 cm"], ["9 s", "5 cm"]]}},
-    ),
-    "sediment": (
-        "flume",
-        {"feeds.0.rate": None, "feeds.0.sedigraph": [["0 s", "0.01 kg/s"], ["1 s", "0.05 kg/s"]]},
-    ),
-    "inside": ("hopper", {"build": {"kind": "fill", "inside": "silo", "most": 20}}),
-    "stream": ("sabo_dam", {"build.begin": "0.6 m", "build.end": "0.75 m"}),
-}
+CASES = tomllib.loads(Path(__file__).with_name("walked_cases.toml").read_text(encoding="utf-8"))
 
 STL = """solid box
 {facets}endsolid box
@@ -567,9 +86,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def data_of(name: str) -> Data:
-    """A case of `CASES` as data."""
-    base, changes = CASES[name]
-    data: Data = tomllib.loads(PACKAGED[base])
+    """A case of walked_cases.toml as data."""
+    changes = dict(CASES[name])
+    data: Data = tomllib.loads(PACKAGED[changes.pop("case")])
+    return with_values(data, dict.fromkeys(changes.pop("without", ())) | changes)
+
+
+def with_values(data: Data, changes: Data) -> Data:
+    """A case with some keys set, None: taken out."""
     for key, value in changes.items():
         path = tuple(int(one) if one.isdecimal() else one for one in key.split("."))
         data = walk.with_value(data, path, value)
@@ -732,25 +256,17 @@ SAID: list[tuple[str, Data, str]] = [
 ]
 
 
-def changed(name: str, changes: Data) -> Data:
-    """A case of `CASES` with some keys set."""
-    data = data_of(name)
-    for key, value in changes.items():
-        data = walk.with_value(data, tuple(int(k) if k.isdecimal() else k for k in key.split(".")), value)
-    return data
-
-
 @pytest.mark.parametrize(("name", "changes", "key"), REFUSED)
 def test_a_key_that_would_mislead_is_refused(folder: Path, name: str, changes: Data, key: str) -> None:
     """The message names the key."""
     with pytest.raises(CaseError, match=rf"(?m)^ *{re.escape(key)}\b.*(has no effect|of the rest)"):
-        walk.read_data(changed(name, changes), folder)
+        walk.read_data(with_values(data_of(name), changes), folder)
 
 
 @pytest.mark.parametrize(("name", "changes", "part"), SAID)
 def test_what_has_no_effect_is_said(folder: Path, name: str, changes: Data, part: str) -> None:
     """The log and `ryusa check` say it."""
-    notes = build(walk.read_data(changed(name, changes), folder)).notes
+    notes = build(walk.read_data(with_values(data_of(name), changes), folder)).notes
     assert any(part in one for one in notes)
 
 

@@ -1,6 +1,7 @@
 """Keys that give a quantity over time: points of the case, or a CSV file."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -40,10 +41,15 @@ def points_of(
     if not isinstance(given, str):
         return given
 
-    def points(path: Path, name: str, _changed: int, _size: int) -> Points:
-        return read_series(path, name, column, read, example)
+    reader = partial(_read, column=column, read=read, example=example)
+    return contents(case, key, given, inside(case, key, given), reader)
 
-    return contents(case, key, given, inside(case, key, given), points)
+
+@lru_cache(maxsize=16)
+def _read(
+    path: Path, name: str, _changed: int, _size: int, *, column: str, read: Callable[[str], Any], example: str
+) -> Points:
+    return read_series(path, name, column, read, example)
 
 
 def faults_of_course(key: str, points: Points) -> Iterator[CaseError]:

@@ -27,6 +27,8 @@ from ryusa.casefile.grains import has_own_sizes, laid_shares, spread_of
 from ryusa.casefile.materials import GRAINS, meeting
 from ryusa.casefile.motion import slope
 from ryusa.casefile.record import events_of
+from ryusa.casefile.row.ends import hydrograph_points
+from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps, spheres_of
@@ -259,12 +261,11 @@ def _given_keys(case: "Case") -> list[str]:
 def _acts_on_water(case: "Case", key: str) -> bool:
     """Whether a key acts where no grain ever is."""
     if key == "water.row.width":  # of a discharge of the whole width, and of grains
-        ends = [] if case.water is None or case.water.row is None else [case.water.row.upstream]
-        every = [one.discharge for one in (*ends, *case.timeline) if one is not None]
-        flood = [one.hydrograph for one in ends if one is not None and one.hydrograph is not None]
-        if any(isinstance(one, str) for one in flood):  # a file says its unit itself
-            return True
-        every += [q for one in flood if not isinstance(one, str) for _, q in one]
+        keys = row_keys(case)
+        end = None if keys is None else keys.upstream
+        every = [one.discharge for one in (end, *case.timeline) if one is not None]
+        if end is not None and end.hydrograph is not None:
+            every += [q for _, q in hydrograph_points(case, end.hydrograph)]
         return any(one is not None and one[1] == "m3/s" for one in every)
     curve = ("grains.sieve_curve", "grains.finest", "grains.coarsest")
     if key in curve:  # D50 is the roughness

@@ -132,17 +132,15 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     span = min(head, highest + 0.5 * (highest - low)) - low
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     wet = surface > floor  # a dry dam has its surface on its crest
-    lines = [_to_the_ends(line, wet[1:] & wet[:-1]) for line in (x, bottom, surface)]  # up to its faces
-    lines[0][:, [0, 2]] = np.clip(np.column_stack([x - 0.5 * step, x + 0.5 * step]), x[0], x[-1])
-    along, under, top = (np.where(wet[:, None], one, np.nan).ravel() for one in lines)
+    sides = np.column_stack([x - 0.5 * step, x + 0.5 * step])
+    ends = np.clip(sides, x[0], x[-1])
+    along, under, top = _over_segments(ends, wet, wet[1:] & wet[:-1], x, bottom, surface)
     axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
         level = np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)  # not over the face of a dam
         joined = loose[1:] & loose[:-1] & level
-        lines = [_to_the_ends(line, joined) for line in (x, floor, bed)]
-        lines[0][:, [0, 2]] = np.column_stack([x - 0.5 * step, x + 0.5 * step])
-        at, low_of, high_of = (np.where(loose[:, None], one, np.nan).ravel() for one in lines)
+        at, low_of, high_of = _over_segments(sides, loose, joined, x, floor, bed)
         axes.fill_between(at, low_of, high_of, color=GROUND, alpha=0.6, lw=0.0)
         axes.plot(at, high_of, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
@@ -170,6 +168,15 @@ def _head(found: LongSection) -> float:
     """Elevation below which most of the energy line lies [m]; -inf where all is dry."""
     wet = found.depth > THIN
     return float(np.quantile(found.elevation(found.energy)[wet], CALM)) if wet.any() else -np.inf
+
+
+def _over_segments(
+    sides: Floats, drawn: np.ndarray, joined: np.ndarray, x: Floats, low: Floats, high: Floats
+) -> list[Floats]:
+    """Places, and two lines over some of the segments up to their sides, shape (n, 2), with gaps as nan."""
+    lines = [_to_the_ends(line, joined) for line in (x, low, high)]
+    lines[0][:, [0, 2]] = sides
+    return [np.where(drawn[:, None], one, np.nan).ravel() for one in lines]
 
 
 def _to_the_ends(line: Floats, joined: np.ndarray) -> Floats:

@@ -24,7 +24,7 @@ class EndsOverTime:
     """
 
     row: ColumnRow
-    _inlets: dict[int, ColumnRow] = field(default_factory=dict[int, ColumnRow])
+    _inlets: dict[int, RowEnd] = field(default_factory=dict[int, RowEnd])
 
     @staticmethod
     def of(row: ColumnRow) -> "EndsOverTime | None":
@@ -34,27 +34,25 @@ class EndsOverTime:
 
     def over(self, begin: float, end: float) -> RowEnds:
         """Ends whose discharge and level are the means from begin to end [s]."""
-        row, up, down = self.row, self.row.upstream, self.row.downstream
+        up, down = self.row.upstream, self.row.downstream
+        if up is not None:
+            q = up.discharge if up.course is None else up.course.mean(begin, end)
+            up = replace(self._inlet(up, q), discharge=q)
         if down is not None and down.course is not None:
-            row = replace(row, downstream=replace(down, level=down.course.mean(begin, end)))
-        if up is None or up.course is None:
-            return ends_of(with_inlet(row))
-        q = up.course.mean(begin, end)
-        inlet = self._inlet(q)
-        assert inlet is not None
-        return ends_of(replace(row, upstream=replace(inlet, discharge=q)))
+            down = replace(down, level=down.course.mean(begin, end))
+        return ends_of(replace(self.row, upstream=up, downstream=down))
 
-    def _inlet(self, q: float) -> RowEnd | None:
-        """The inlet with depth and profile of a discharge near this one [m2/s]."""
-        up = self.row.upstream
-        assert up is not None and up.course is not None
+    def _inlet(self, up: RowEnd, q: float) -> RowEnd:
+        """The upper end with depth and profile of a discharge near this one [m2/s]; found once for each."""
         if not q > 0.0:
             return up
-        apart = ALIKE * (max(up.course.y) - min(up.course.y)) or q
+        apart = (ALIKE * (max(up.course.y) - min(up.course.y)) if up.course else 0.0) or q
         k = max(round(q / apart), 1)
         if k not in self._inlets:
-            self._inlets[k] = with_inlet(replace(self.row, upstream=replace(up, discharge=k * apart)))
-        return self._inlets[k].upstream
+            near = with_inlet(replace(self.row, upstream=replace(up, discharge=k * apart))).upstream
+            assert near is not None
+            self._inlets[k] = near
+        return self._inlets[k]
 
 
 def with_inlet(row: ColumnRow) -> ColumnRow:

@@ -1,7 +1,6 @@
 """What enters a row upstream and what lies beyond its ends: discharge and level, constant or over time."""
 
 import math
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ryusa.casefile.column.schema import column_keys
@@ -53,7 +52,11 @@ def stage_of(case: "Case") -> Course | None:
 
 def stage_points(case: "Case", given: Any) -> Points:
     """Points of a stage as given, or as its file holds them."""
-    return points_of(case, STAGE, given, "z", partial(quantity, unit="m"), "'t [s],z [m]'")
+    return points_of(case, STAGE, given, "z", _metres, "'t [s],z [m]'")
+
+
+def _metres(value: str) -> float:
+    return quantity(value, "m")
 
 
 def levels_of(case: "Case", end: RowEndSection) -> list[float]:
