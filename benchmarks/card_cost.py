@@ -1,10 +1,10 @@
-"""Memory and traffic of the CUDA engine by count, and what a card's bandwidth would allow: an estimate.
+"""Memory and traffic of the CUDA engine by count.
 
     python benchmarks/card_cost.py [--listed 9 --touching 6]
 
 Memory is that of the arrays the engine allocates; a test compares the sum with those that it has allocated in
 numba's simulator. Traffic is what a step asks for, and the least of it, with everything that belongs to a
-partner found in the card's caches. No estimate has been held against a card.
+partner found in the card's caches.
 """
 
 import argparse
@@ -16,7 +16,6 @@ from ryusa.engine.shared.variant import KernelVariant
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 
-BANDWIDTH = {"H100": 3.35e12, "H200": 4.8e12}  # of the memory, as NVIDIA gives it [B/s]
 VARIANTS = {
     "dry": KernelVariant(0, 1, 0, 0, 0, 0, 0, 0),
     "column": KernelVariant(0, 1, 0, 0, 1, 0, 1, 0),
@@ -98,14 +97,14 @@ def traffic(variant: KernelVariant, listed: float, touching: float) -> Traffic:
     return Traffic(asked, own + listed * in_list + touching * memory_of_pair)
 
 
-def estimate(kind: str, listed: float, touching: float) -> dict[str, Any]:
-    """What memory and bandwidth come to for one kind of scene, of many grains."""
+def counted(kind: str, listed: float, touching: float) -> dict[str, Any]:
+    """Memory and traffic of one kind of scene, of many grains."""
     variant, many = VARIANTS[kind], 1_000_000
     bytes_a_grain = memory(
         many, 0, 0, variant, room_of(round(listed * many)), room_of(round(0.5 * touching * many))
     )
     moved = traffic(variant, listed, touching)
-    row: dict[str, Any] = {
+    return {
         "kind": kind,
         "listed": listed,
         "touching": touching,
@@ -113,10 +112,6 @@ def estimate(kind: str, listed: float, touching: float) -> dict[str, Any]:
         "asked a step [B]": round(moved.asked),
         "least a step [B]": round(moved.least),
     }
-    for card, speed in BANDWIDTH.items():
-        row[f"{card}, all asked for from memory [M/s]"] = round(speed / moved.asked / 1e6)
-        row[f"{card}, partners from caches [M/s]"] = round(speed / moved.least / 1e6)
-    return row
 
 
 def main() -> None:
@@ -127,7 +122,7 @@ def main() -> None:
     parser.add_argument("--touching", type=float, default=6.0, help="neighbours a grain in contact")
     args = parser.parse_args()
     for kind in VARIANTS:
-        print(json.dumps(estimate(kind, args.listed, args.touching)))
+        print(json.dumps(counted(kind, args.listed, args.touching)))
 
 
 if __name__ == "__main__":
