@@ -12,9 +12,12 @@ import sys
 import numpy as np
 import pytest
 from benchmarks import card_cost
-from tests.engine.heaps import KINDS, alike, heap, loaded
+from tests.engine.conftest import D
+from tests.engine.heaps import KINDS, alike, apart, heap, loaded
 
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.cuda import device_state as store
+from ryusa.engine.cuda import run_status as F
 from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
@@ -22,21 +25,50 @@ from ryusa.running.stops import Stop
 sys.setswitchinterval(2e-5)  # the simulator polls its threads: without this each wait costs 5 ms
 
 
-def test_both_sides_of_every_pair_hold_the_same_bits():
-    engine = loaded(CudaEngine(), heap(**KINDS["flow, rolling spring, records"]))
+@pytest.mark.parametrize(
+    "kind", ["flow, rolling spring, records", "exact timing, capped together, rolling spring"]
+)
+def test_both_sides_of_every_pair_hold_the_same_bits(kind):
+    engine = loaded(CudaEngine(), heap(**KINDS[kind]))
     engine.advance(5).raise_if_any()
     held = engine._device
-    start, partners, live, _, rows = (array.copy_to_host() for array in held.pairs)
+    start, partners, live, eta, rows = (array.copy_to_host() for array in held.pairs)
     ids = held.bodies.ids.copy_to_host()
     found = {}
     for i in range(held.n):
         for k in range(start[i], start[i + 1]):
             if partners[k] < held.n:
                 found.setdefault(frozenset((ids[i], ids[partners[k]])), []).append(
-                    (live[k], rows[k, :14].tobytes())
+                    (live[k], eta[k].tobytes(), rows[k, :14].tobytes())
                 )
     assert all(len(sides) == 2 and sides[0] == sides[1] for sides in found.values() if sides[0][0])
     assert sum(bool(sides[0][0]) for sides in found.values()) > 20
+
+
+@pytest.mark.parametrize("kind", ["exact timing, films", "exact timing, plane, may pull"])
+def test_a_list_renewed_between_kicks_and_shear_finds_the_pairs_that_touch_there(kind):
+    made = heap(**KINDS[kind] | {"stir": 0.6})
+    mine, theirs = loaded(CudaEngine(skin=0.03), made), loaded(CpuEngine(skin=0.03), made)
+    for engine in (mine, theirs):
+        engine.advance(25).raise_if_any()
+    a, b = mine.state(), theirs.state()
+    assert mine._n_list > 2
+    assert apart(a, b, made[0]) < 1e-11 * D
+    assert sorted(zip(a.contacts.i, a.contacts.j, a.contacts.state, strict=True)) == sorted(
+        zip(b.contacts.i, b.contacts.j, b.contacts.state, strict=True)
+    )
+    alike(mine.tally(), theirs.tally(), 1e-10)
+
+
+def test_grains_have_the_halves_of_a_whole_step_again_after_kicks_and_shear():
+    engine = loaded(CudaEngine(), heap(**KINDS["exact timing"]))
+    engine.advance(1).raise_if_any()
+    half, before = engine._device.half, engine.state()
+    engine.advance(1).raise_if_any()
+    assert (engine._device.half, int(engine._status[F.KICKED])) == (half, 0)
+    x, v = (getattr(engine._device.bodies, name).copy_to_host() for name in ("x", "v"))
+    assert np.array_equal(np.sort(x[1 - half, : engine._n, 0]), np.sort(before.x[:, 0]))
+    assert not np.array_equal(x[0], x[1]) and not np.array_equal(v[0], v[1])
 
 
 @pytest.mark.parametrize(

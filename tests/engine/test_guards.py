@@ -43,7 +43,7 @@ def test_a_velocity_that_stops_being_finite_names_its_grain_and_step():
     engine, flags = advance((replace(fixed, contact=law, overlap_limit=np.inf), first), 10_000)
     assert isinstance(flags.fault, NotANumber)
     assert flags.fault.grain in {1, 2}
-    assert 0 < flags.fault.step < 10_000
+    assert 0 <= flags.fault.step < 10_000  # that in which they touch
     assert engine.state().x[0] == pytest.approx([0.0, 0.0, 0.0])
 
 

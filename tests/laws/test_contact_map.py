@@ -1,26 +1,25 @@
-"""The discrete map of a contact against the damped oscillator in closed form."""
+"""A contact over a step, as kicks and a shear, against the damped oscillator in closed form."""
 
 import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ryusa.laws import collision
 from ryusa.laws.contact import damping
 from ryusa.laws.contact_map import (
-    begin_in_step,
-    dashpot_of_map,
-    decay_of_map,
+    dashpot_of_kick,
+    decay_of_kick,
     decay_rate,
-    end_in_step,
     free_response,
     frequency_squared,
-    passing,
-    spring_of_map,
+    kick_and_shear,
+    part_in_step,
+    springs_of_kicks,
     time_of_release,
-    velocity_of_map,
+    touch_in_step,
 )
 from ryusa.laws.slip_within_step import slip_within_step
 
@@ -53,35 +52,41 @@ def test_the_free_response_solves_the_equation_of_motion(zeta, t):
 
 
 @given(zeta=ZETA, phase=PHASE, x=st.floats(-1.0, 1.0), v=st.floats(-1.0, 1.0))
-def test_the_map_goes_through_the_points_of_the_oscillator(zeta, phase, x, v):
+def test_kicks_and_shears_go_through_the_points_of_the_oscillator(zeta, phase, x, v):
     eta, a, q = oscillator(zeta)
     dt = phase / math.sqrt(K / M)
     v *= math.sqrt(K / M)
-    k_d, eta_d = spring_of_map(K, eta, M, dt), dashpot_of_map(eta, M, dt)
-    points = [flow(x, v, n * dt, a, q)[0] for n in range(6)]
-    now, mean = points[1], (points[1] - points[0]) / dt
-    for wanted in points[2:]:
-        mean -= dt * (k_d * now + eta_d * mean) / M
-        now += dt * mean
-        assert now == pytest.approx(wanted, abs=1e-11)
-    assert velocity_of_map(now, mean, dt, a, q) == pytest.approx(
-        flow(x, v, 5 * dt, a, q)[1], abs=1e-9 * math.sqrt(K / M)
-    )
+    eta_d = dashpot_of_kick(eta, M, dt)
+    k_d, way, after, stored, k_step = springs_of_kicks(K, eta_d, M, dt)
+    _, same, before, left = kick_and_shear(dt, a, q)
+    assert (left, after) == pytest.approx((1.0 - eta_d * dt / M, same), rel=1e-9, abs=1e-9)
+    assert (k_d, stored) == pytest.approx((M * (after + before) / dt, K + M * after * before), rel=1e-9)
+    now, u, force = x, v - after * x, -k_d * x  # the spring kept as a place, and as a force
+    for n in range(1, 6):
+        now, u = now + way * u, left * u
+        force -= k_step * dt * u
+        wanted = flow(x, v, n * dt, a, q)
+        assert (now, force) == pytest.approx((wanted[0], -k_d * wanted[0]), rel=1e-9, abs=1e-9 * K)
+        assert left * u - before * now == pytest.approx(wanted[1], abs=1e-9 * math.sqrt(K / M))
+        u -= dt * (k_d * now + eta_d * u) / M
 
 
 @given(zeta=ZETA, phase=PHASE)
-def test_the_oscillator_of_a_map_is_the_one_it_was_made_of(zeta, phase):
+def test_the_oscillator_of_a_kick_is_the_one_it_was_made_of(zeta, phase):
     eta, a, q = oscillator(zeta)
     dt = phase / math.sqrt(K / M)
-    found = decay_of_map(dashpot_of_map(eta, M, dt), M, dt)
+    found = decay_of_kick(dashpot_of_kick(eta, M, dt), M, dt)
     assert found == pytest.approx(a, rel=1e-11, abs=1e-9)
     assert frequency_squared(K, 2.0 * found * M, M) == pytest.approx(q, abs=1e-9 * K / M)
 
 
 @pytest.mark.parametrize("eta", [0.0, 5.0])
 def test_small_steps_need_no_correction(eta):
-    assert spring_of_map(K, eta, M, 1e-9) == pytest.approx(K, rel=1e-6)
-    assert dashpot_of_map(eta, M, 1e-9) == pytest.approx(eta, rel=1e-6)
+    eta_d = dashpot_of_kick(eta, M, 1e-6)
+    assert 2.0 * eta_d == pytest.approx(eta, rel=1e-5)
+    k_d, way, _, stored, k_step = springs_of_kicks(K, eta_d, M, 1e-6)
+    assert (k_d, stored, k_step) == pytest.approx((K, K, K), rel=1e-5)
+    assert way == pytest.approx(1e-6, rel=1e-5)
 
 
 @pytest.mark.parametrize("tension", [False, True])
@@ -101,16 +106,20 @@ def test_a_force_that_has_ended_ends_at_once_and_one_that_never_ends_is_not_ende
     assert time_of_release(1.0, 0.0, a, q, True) == math.inf
 
 
-@given(zeta=ZETA, phase=PHASE, since=st.floats(0.01, 1.0), v=st.floats(0.1, 10.0))
-def test_a_contact_that_began_within_a_step_is_then_the_oscillator_from_its_touch(zeta, phase, since, v):
+@given(zeta=ZETA, phase=PHASE, wait=st.floats(0.0, 1.0), v=st.floats(0.1, 10.0))
+def test_a_contact_that_begins_within_a_step_is_then_the_oscillator_from_its_touch(zeta, phase, wait, v):
     _, a, q = oscillator(zeta)
     dt = phase / math.sqrt(K / M)
-    found, touch, y, rate, brake = begin_in_step(v * since * dt, v, 0.0, dt, a, q)
-    assert touch == v
-    assert found == pytest.approx(since * dt)
-    assert (y, rate) == pytest.approx(flow(0.0, v, since * dt, a, q), rel=1e-12)
-    after = v * since * dt + dt * (v - brake)
-    assert after == pytest.approx(flow(0.0, v, (1.0 + since) * dt, a, q)[0], rel=1e-10)
+    since, y, rate = touch_in_step(-v * wait * dt, v, dt, a, q)
+    assert since == pytest.approx((1.0 - wait) * dt, abs=1e-12 * dt)
+    assert (y, rate) == pytest.approx(flow(0.0, v, since, a, q), rel=1e-12)
+
+
+def test_a_force_that_comes_back_goes_on_from_the_overlap_that_there_is():
+    _, a, q = oscillator(0.2)
+    assert touch_in_step(0.1, 0.5, 1e-3, a, q) == pytest.approx(
+        (1e-3, *flow(0.1, 0.5, 1e-3, a, q)), rel=1e-12
+    )
 
 
 @given(zeta=ZETA, phase=PHASE, until=st.floats(0.0, 1.0))
@@ -118,10 +127,10 @@ def test_after_its_release_a_contact_flies_on_with_its_last_velocity(zeta, phase
     _, a, q = oscillator(zeta)
     dt = phase / math.sqrt(K / M)
     x, v = 1.0, -math.sqrt(K / M)
-    mean, end = end_in_step(x, v, until * dt, dt, a, q)
+    y, end = part_in_step(x, v, until * dt, dt, a, q)
     there, speed = flow(x, v, until * dt, a, q)
     assert end == pytest.approx(speed, rel=1e-10)
-    assert x + dt * mean == pytest.approx(there + speed * (1.0 - until) * dt, abs=1e-10)
+    assert y == pytest.approx(there + speed * (1.0 - until) * dt, abs=1e-10)
 
 
 SLIP = {"spring": (False, False, False), "dropped": (False, True, False), "together": (True, False, True)}
@@ -156,17 +165,3 @@ def test_slip_that_sticks_in_space_is_that_in_a_plane_turned():
     turned = slip_within_step(1e-3, 1e-3, 0.0, a, q, M, 0.3, 0.0, 0.4, 0.12, 0.0, 0.16, *rest)
     assert turned[0:9:3] == pytest.approx([0.6 * x for x in flat[0:9:3]])
     assert turned[2:9:3] == pytest.approx([0.8 * x for x in flat[0:9:3]])
-
-
-@given(v=st.floats(0.1, 10.0), along=st.floats(0.0, 10.0), since=st.floats(0.0, 0.01))
-def test_free_grains_that_pass_each_other_touch_where_their_straight_ways_meet(v, along, since):
-    reach = 1.0  # it touched `since` before, at this closing speed and speed along the surface
-    x, z = along * since, reach - v * since
-    distance = math.hypot(x, z)
-    overlap, closing = reach - distance, (v * z - along * x) / distance
-    assume(overlap > 1e-12 and closing > 0.05)
-    curve = passing(v * v + along * along, closing, distance)
-    found, touch, *_ = begin_in_step(overlap, closing, curve, 0.01, 0.0, 0.0)
-    second_order = 2.0 * (v + along) ** 3 * since**2
-    assert found == pytest.approx(since, abs=second_order * since / closing + 1e-8)
-    assert touch == pytest.approx(v, abs=second_order + 1e-8)

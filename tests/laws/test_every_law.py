@@ -30,7 +30,7 @@ BLIND = {
     ("contact_step.contact_kinematics", "dt"),
     *(("contact_step.tangential_step", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
     *(("contact_step.tangential_step", name) for name in ("f_n", "e_n", "cohesion", "mu")),  # of tau_c
-    # of tau_c; the normal force, which is no number either, comes from begin_in_step and end_in_step
+    # of tau_c; the normal force, which is no number either, comes from touch_in_step and part_in_step
     *(("slip_within_step.slip_within_step", name) for name in ("y", "rate", "a", "q", "m", "cohesion", "mu")),
     ("contact_step.tangential_step", "soft_s"),  # used while sliding
     ("contact_step.normal_step", "overlap"),  # comes from positions, which the grain step looks at

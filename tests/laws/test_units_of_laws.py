@@ -98,16 +98,14 @@ UNITS = {
     "contact.damping": "-, N/m, kg -> N s/m",
     "contact_map.decay_rate": "N s/m, kg -> 1/s",
     "contact_map.frequency_squared": "N/m, N s/m, kg -> 1/s2",
-    "contact_map.half_sine_squared": "1/s2, s -> -",
-    "contact_map.spring_of_map": "N/m, N s/m, kg, s -> N/m",
-    "contact_map.dashpot_of_map": "N s/m, kg, s -> N s/m",
-    "contact_map.decay_of_map": "N s/m, kg, s -> 1/s",
+    "contact_map.dashpot_of_kick": "N s/m, kg, s -> N s/m",
+    "contact_map.decay_of_kick": "N s/m, kg, s -> 1/s",
     "contact_map.free_response": "s, 1/s, 1/s2 -> s, -",
-    "contact_map.velocity_of_map": "m, m/s, s, 1/s, 1/s2 -> m/s",
+    "contact_map.kick_and_shear": "s, 1/s, 1/s2 -> s, 1/s, 1/s, -",
+    "contact_map.springs_of_kicks": "N/m, N s/m, kg, s -> N/m, s, 1/s, N/m, N/m",
     "contact_map.time_of_release": "m, m/s, 1/s, 1/s2, bool -> s",
-    "contact_map.begin_in_step": "m, m/s, m/s2, s, 1/s, 1/s2 -> s, m/s, m, m/s, m/s",
-    "contact_map.passing": "m2/s2, m/s, m -> m/s2",
-    "contact_map.end_in_step": "m, m/s, s, s, 1/s, 1/s2 -> m/s, m/s",
+    "contact_map.touch_in_step": "m, m/s, s, 1/s, 1/s2 -> s, m, m/s",
+    "contact_map.part_in_step": "m, m/s, s, s, 1/s, 1/s2 -> m, m/s",
     "contact_step.contact_kinematics": (
         "bool, m, m, m, m, m, m/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s, rad/s, s"
         " -> -, -, -, m, m, m, m/s, m/s, m/s, m/s, -"

@@ -36,7 +36,7 @@ def some_state() -> State:
     contacts = Contacts(
         i=np.array([0, 1]), j=np.array([2, 4]),
         **{name: draw.random((k, 3)) for name in ("spring_s", "dash_s", "spring_r", "dash_r")},
-        **{name: draw.random(k) for name in ("dash_n", "f_n", "eta_n", "k_n", "rest_of_closing", "overlap")},
+        **{name: draw.random(k) for name in ("dash_n", "f_n", "eta_n", "k_n", "overlap")},
         state=np.array([1, 3]),
         event=np.where(draw.random((k, N_EVENT)) < 0.1, np.nan, draw.random((k, N_EVENT))),
     )  # fmt: skip

@@ -1,11 +1,10 @@
 """The exact map of a linear contact over one time step, and its true instants of touch and release.
 
 A contact of linear spring and dashpot, alone, is a damped oscillator y'' + 2 a y' + (a**2 + q) y = 0 with
-decay rate a [1/s] and square of the angular frequency q [1/s2], negative when it is overdamped. The scheme of
-`motion.semi_implicit` with constant coefficients is a linear map too: `spring_of_map` and `dashpot_of_map`
-make it the map of the oscillator sampled at the steps (design/0014). What is left of the error of a
-restitution then comes from the steps in which a contact begins and ends; `begin_in_step` and `end_in_step`
-let it begin and end within them.
+decay rate a [1/s] and square of the angular frequency q [1/s2], negative when it is overdamped. Its normal
+motion over a step is a kick, a shear and a kick (`kick_and_shear`, design/0014), with velocities that are
+those of the oscillator; where it begins or ends within a step, `touch_in_step` and `part_in_step` follow it.
+The tangential motion goes the same way, its spring kept as a force: it does not move the grains apart.
 """
 
 import math
@@ -51,53 +50,8 @@ def frequency_squared(k: float, eta: float, m: float) -> float:
 
 
 @law
-def half_sine_squared(q: float, t: float) -> float:
-    """sin(w t/2)**2 with w**2 = q [-]; -sinh(|w| t/2)**2 for negative q.
-
-    Parameters
-    ----------
-    q : square of the angular frequency [1/s2].
-    t : time [s].
-
-    >>> round(half_sine_squared(math.pi**2, 1.0), 12)
-    1.0
-    """
-    half = 0.5 * math.sqrt(math.fabs(q)) * t
-    if q >= 0.0:
-        return math.sin(half) ** 2
-    return -(math.sinh(half) ** 2)
-
-
-@law
-def spring_of_map(k: float, eta: float, m: float, dt: float) -> float:
-    """Stiffness whose discrete map is the oscillator of stiffness k [N/m].
-
-    Parameters
-    ----------
-    k : stiffness [N/m].
-    eta : dashpot [N s/m].
-    m : effective mass [kg].
-    dt : time step [s].
-
-    Returns
-    -------
-    m (1 - 2 E cos(w dt) + E**2)/dt**2 with E = exp(-a dt), w**2 = q: trace and determinant of the map
-    are those of the oscillator. Tends to k for small steps.
-
-    Notes
-    -----
-    Source: derived, design/0014.
-
-    >>> round(spring_of_map(1.0, 0.0, 1.0, math.pi / 3.0) * (math.pi / 3.0) ** 2, 12)
-    1.0
-    """
-    e = math.exp(-decay_rate(eta, m) * dt)
-    return m * ((1.0 - e) ** 2 + 4.0 * e * half_sine_squared(frequency_squared(k, eta, m), dt)) / (dt * dt)
-
-
-@law
-def dashpot_of_map(eta: float, m: float, dt: float) -> float:
-    """Dashpot whose discrete map is the oscillator with dashpot eta [N s/m]: m (1 - exp(-2 a dt))/dt.
+def dashpot_of_kick(eta: float, m: float, dt: float) -> float:
+    """Dashpot of the half steps before and after a kick [N s/m]: m (1 - exp(-a dt))/dt.
 
     Parameters
     ----------
@@ -107,21 +61,21 @@ def dashpot_of_map(eta: float, m: float, dt: float) -> float:
 
     Notes
     -----
-    Source: derived, design/0014. Tends to eta for small steps.
+    Source: derived, design/0014. Over dt it takes from a velocity what `eta` takes in half the time.
 
-    >>> round(dashpot_of_map(2.0 * math.log(2.0), 2.0, 1.0), 12)
+    >>> round(dashpot_of_kick(4.0 * math.log(2.0), 2.0, 1.0), 12)
     1.0
     """
-    return -m * math.expm1(-2.0 * decay_rate(eta, m) * dt) / dt
+    return -m * math.expm1(-decay_rate(eta, m) * dt) / dt
 
 
 @step_law
-def decay_of_map(eta_d: float, m: float, dt: float) -> float:
-    """Decay rate a of the oscillator of a map [1/s]; inverse of `dashpot_of_map`.
+def decay_of_kick(eta_d: float, m: float, dt: float) -> float:
+    """Decay rate a of the oscillator of a pair [1/s]; inverse of `dashpot_of_kick`.
 
     Parameters
     ----------
-    eta_d : dashpot of the map [N s/m].
+    eta_d : dashpot at kicks [N s/m].
     m : effective mass [kg].
     dt : time step [s].
 
@@ -129,10 +83,10 @@ def decay_of_map(eta_d: float, m: float, dt: float) -> float:
     -----
     Source: derived, design/0014. The error is that of 1e-16 in the phase a dt over a step.
 
-    >>> round(decay_of_map(dashpot_of_map(0.5, 2.0, 0.1), 2.0, 0.1), 12)
+    >>> round(decay_of_kick(dashpot_of_kick(0.5, 2.0, 0.1), 2.0, 0.1), 12)
     0.125
     """
-    return -0.5 * log(1.0 - eta_d * dt / m) / dt
+    return -log(1.0 - eta_d * dt / m) / dt
 
 
 @step_law
@@ -168,22 +122,75 @@ def free_response(t: float, a: float, q: float) -> tuple[float, float]:
 
 
 @step_law
-def velocity_of_map(x: float, v: float, dt: float, a: float, q: float) -> float:
-    """Velocity at a step [m/s] of an oscillator at x that was at x - v dt one step before.
+def kick_and_shear(dt: float, a: float, q: float) -> tuple[float, float, float, float]:
+    """The flow of the oscillator over a step as a kick at either end and a shear between them.
 
     Parameters
     ----------
-    x : displacement at the step [m].
-    v : mean velocity over the step before [m/s].
     dt : time step [s].
     a : decay rate [1/s].
     q : square of the angular frequency [1/s2].
 
-    >>> round(velocity_of_map(1.0, 1.0, 1.0, 0.0, 0.0), 12)
-    1.0
+    Returns
+    -------
+    way : displacement of the shear over its velocity [s].
+    after, before : rate that the kicks after and before a step take from a displacement [1/s].
+    left : what the dashpot leaves of a velocity in half a step [-].
+
+    Notes
+    -----
+    Source: derived, design/0014. From displacement x and velocity v, u = v - after x, and one step later
+    x + way u and left**2 u - before (x + way u). Without damping kicks and shear are canonical, whatever else
+    acts on the velocities at the steps.
+
+    >>> way, after, before, left = kick_and_shear(1.0, 0.0, (math.pi / 3.0) ** 2)
+    >>> u = 2.0 - after * 0.5
+    >>> x = 0.5 + way * u
+    >>> math.isclose(x, 0.25 + 2.0 * math.sin(math.pi / 3.0) / (math.pi / 3.0)), after == before, left
+    (True, True, 1.0)
     """
-    g, h = free_response(-dt, a, q)
-    return (x - v * dt - x * (h + 2.0 * a * g)) / g
+    # from half the time, so that nothing is the difference of two large numbers
+    g, h = free_response(0.5 * dt, a, q)
+    left, way = exp(-a * dt), 2.0 * g * (h + a * g)
+    both = (1.0 - left) * (1.0 - left) + 4.0 * q * g * g
+    more = (1.0 - left) * (1.0 + left) - 2.0 * a * way
+    return way, 0.5 * (both + more) / way, 0.5 * (both - more) / way, left
+
+
+@step_law
+def springs_of_kicks(k: float, eta_d: float, m: float, dt: float) -> tuple[float, float, float, float, float]:
+    """Springs of the kicks of a pair.
+
+    Parameters
+    ----------
+    k : stiffness [N/m].
+    eta_d : dashpot at kicks, of `dashpot_of_kick` [N s/m].
+    m : effective mass [kg].
+    dt : time step [s].
+
+    Returns
+    -------
+    k_d : force of a kick over the displacement [N/m].
+    way, after : of `kick_and_shear` [s], [1/s].
+    stored : stiffness of which the energy is that of the spring, if m u u'/2 is that of the motion with u and
+        u' the velocities before and after a kick [N/m].
+    k_step : force that a spring gains in a step over velocity times dt [N/m], for a spring that is kept as
+        its force.
+
+    Notes
+    -----
+    Source: derived, design/0014. All tend to k for small steps.
+
+    >>> k_d, way, after, stored, k_step = springs_of_kicks(1.0, 0.0, 1.0, 1.0)
+    >>> math.isclose(k_d, 2.0 * math.tan(0.5)), math.isclose(stored, 1.0 / math.cos(0.5) ** 2)
+    (True, True)
+    >>> math.isclose(k_step, 4.0 * math.sin(0.5) ** 2)
+    True
+    """
+    a = decay_of_kick(eta_d, m, dt)
+    way, after, before, left = kick_and_shear(dt, a, k / m - a * a)
+    k_d = m * (after + before) / dt
+    return k_d, way, after, k + m * after * before, k_d * way / (left * dt)
 
 
 @step_law
@@ -227,77 +234,39 @@ def time_of_release(x: float, v: float, a: float, q: float, tension: bool) -> fl
 
 
 @step_law
-def begin_in_step(
-    x: float, v: float, curve: float, dt: float, a: float, q: float
-) -> tuple[float, float, float, float, float]:
-    """Let a contact that began within the last step be the oscillator from its true instant of touch.
+def touch_in_step(x: float, v: float, dt: float, a: float, q: float) -> tuple[float, float, float]:
+    """Let a contact that begins within the coming step be the oscillator from its true instant of touch.
 
     Parameters
     ----------
-    x : overlap at the first step that finds the grains in touch [m], > 0.
-    v : closing speed of that step [m/s], > 0.
-    curve : rate at which the closing speed of free grains falls as they pass each other [m/s2], as in
-        `passing`.
+    x : overlap at the step [m]; minus the gap if the grains do not touch yet.
+    v : closing speed [m/s], > 0.
     dt : time step [s].
     a : decay rate [1/s].
     q : square of the angular frequency [1/s2].
 
     Returns
     -------
-    since : time since touch [s].
-    v_touch : closing speed at touch [m/s].
-    y : overlap that the oscillator has now [m]; less than x, since its force has braked the pair.
-    rate : its rate now [m/s].
-    brake : closing speed that its force takes within the coming step [m/s], so that the overlap comes to
-        where the oscillator will be. The step after has to take the closing speed (y_new - y)/dt into its
-        map.
+    since : time from touch to the end of the step [s]; negative if there is none within it.
+    y, rate : overlap at the end of the step [m], and its rate [m/s].
 
-    Notes
-    -----
-    Source: derived, design/0014: x = v since + curve since**2/2 of a free flight, v_touch = v + curve since.
-
-    >>> begin_in_step(0.5, 1.0, 0.0, 1.0, 0.0, 0.0)
-    (0.5, 1.0, 0.5, 1.0, 0.0)
-    >>> begin_in_step(1.5, 1.0, 1.0, 2.0, 0.0, 0.0)
-    (1.0, 2.0, 1.5, 2.0, 0.0)
+    >>> touch_in_step(-0.5, 1.0, 1.0, 0.0, 0.0)
+    (0.5, 0.5, 1.0)
     """
-    v_touch = math.sqrt(v * v + 2.0 * curve * x)
-    since = min(2.0 * x / (v + v_touch), dt)
-    now, rate = free_response(since, a, q)
-    then, _ = free_response(since + dt, a, q)
-    bent = 0.5 * curve * since * since
-    brake = (v_touch * (dt - then) + x + bent) / dt
-    return since, v_touch, v_touch * now - bent, v_touch * rate, brake
+    since = dt - max(-x, 0.0) / v
+    held = max(x, 0.0)
+    g, h = free_response(since, a, q)
+    return since, held * (h + 2.0 * a * g) + v * g, v * h - (a * a + q) * held * g
 
 
 @step_law
-def passing(u_square: float, v: float, distance: float) -> float:
-    """Rate at which the closing speed of two free grains falls as they pass each other [m/s2].
-
-    Parameters
-    ----------
-    u_square : square of their relative velocity [m2/s2].
-    v : closing speed [m/s].
-    distance : of their centres [m]; inf of a grain and a plane.
-
-    Notes
-    -----
-    Source: the second derivative of the distance of two points in uniform motion, (u**2 - v**2)/distance.
-
-    >>> passing(5.0, 1.0, 2.0), passing(5.0, 1.0, math.inf)
-    (2.0, 0.0)
-    """
-    return (u_square - v * v) / distance
-
-
-@step_law
-def end_in_step(x: float, v: float, until: float, dt: float, a: float, q: float) -> tuple[float, float]:
+def part_in_step(x: float, v: float, until: float, dt: float, a: float, q: float) -> tuple[float, float]:
     """Let a contact that ends within the coming step leave the oscillator at its true instant of release.
 
     Parameters
     ----------
-    x : overlap [m].
-    v : its rate at the step [m/s].
+    x : overlap at the step [m].
+    v : its rate [m/s].
     until : time to the end of the force [s], at most dt.
     dt : time step [s].
     a : decay rate [1/s].
@@ -305,13 +274,12 @@ def end_in_step(x: float, v: float, until: float, dt: float, a: float, q: float)
 
     Returns
     -------
-    v_mean : mean closing speed over the coming step [m/s], with free flight after the release.
-    v_end : closing speed of that flight [m/s].
+    y : overlap at the end of the step [m], after a free flight from the release on.
+    rate : its rate in that flight [m/s].
 
-    >>> end_in_step(0.0, -1.0, 0.0, 1.0, 0.0, 4.0)
-    (-1.0, -1.0)
+    >>> part_in_step(0.5, -1.0, 0.0, 1.0, 0.0, 4.0)
+    (-0.5, -1.0)
     """
     g, h = free_response(until, a, q)
-    there = x * (h + 2.0 * a * g) + v * g
-    v_end = v * h - (a * a + q) * x * g
-    return (there + v_end * (dt - until) - x) / dt, v_end
+    rate = v * h - (a * a + q) * x * g
+    return x * (h + 2.0 * a * g) + v * g + rate * (dt - until), rate

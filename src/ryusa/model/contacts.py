@@ -84,9 +84,9 @@ class Contacts:
     dash_r: Floats  # rolling torque on i without its spring in the last step [N m], shape (n_contact, 3)
     eta_n: Floats  # normal dashpot, set at first touch if films reduce rebound, shape (n_contact,);
     # [N s/m], of elastic spheres over the overlap to the power 0.25 [N s/m**1.25]
-    k_n: Floats  # normal stiffness of the map of exact timing [N/m], else 0, shape (n_contact,)
+    # with exact timing the stiffness k with which a spring holds f**2/(2 k) [N/m], else 0, shape (n_contact,)
+    k_n: Floats
     state: np.ndarray  # 1 in contact; others in the steps that begin or end it (engine/shared), int64
-    rest_of_closing: Floats  # correction of the closing speed still to come [m/s], shape (n_contact,)
     overlap: Floats  # of elastic spheres in the last step [m], else 0, shape (n_contact,)
     event: np.ndarray  # incomplete record of each contact, shape (n_contact, N_EVENT), float64
 
@@ -96,7 +96,7 @@ class Contacts:
         ids = np.zeros(0, dtype=np.int64)
         v3 = np.zeros((0, 3))
         none, event = np.zeros(0), np.zeros((0, N_EVENT))
-        return Contacts(ids, ids, v3, v3, none, none, v3, v3, none, none, ids, none, none, event)
+        return Contacts(ids, ids, v3, v3, none, none, v3, v3, none, none, ids, none, event)
 
     def __len__(self) -> int:
         return len(self.i)

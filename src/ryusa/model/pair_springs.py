@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.collision import effective_mass, effective_mass_tangential
+from ryusa.laws.collision import effective_mass_tangential
 from ryusa.laws.contact import damping
-from ryusa.laws.contact_map import spring_of_map
+from ryusa.laws.contact_map import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.families import Adhesion, ContactForce, ContactTiming
 from ryusa.laws.hertz import effective_modulus, hertz_stiffness, mindlin_ratio
 from ryusa.model.contact_law import attraction_of
@@ -28,9 +28,8 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     Notes
     -----
     Of elastic spheres the normal one is the force over the overlap, the tangential one that at the overlap
-    (design/0018). Else they are those of the law, or with exact timing those of the map that goes through
-    the points of its oscillator (design/0014), which depend on the masses and the step. A dashpot that water
-    chose at the touch of a pair is not known here: its map has that of the dry restitution.
+    (design/0018). Else they are those of the law; the tangential one with exact timing that of its kicks
+    (design/0014), which depends on the masses and the step.
     """
     if scene.materials is not None:
         k_n, k_s = np.empty(len(i)), np.empty(len(i))
@@ -49,8 +48,8 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, math.inf)])
     both = np.column_stack([m[i], r[i], inertia[i], m[j], r[j], inertia[j]])
     kinds, place = np.unique(both, axis=0, return_inverse=True)
-    found = np.array([_springs_of_map(scene, *(float(one) for one in kind)) for kind in kinds])[place.ravel()]
-    return found[:, 0], found[:, 1]
+    found = np.array([_spring_of_kicks(scene, *(float(one) for one in kind)) for kind in kinds])
+    return k_n, found[place.ravel()]
 
 
 def pair_attractions(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
@@ -84,13 +83,10 @@ def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Flo
     return k_n, mindlin_ratio(law.poisson_ratio) * k_n
 
 
-def _springs_of_map(
+def _spring_of_kicks(
     scene: Scene, m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
-) -> tuple[float, float]:
+) -> float:
     law = scene.contact
-    m_n = effective_mass(m_i, m_j)
     m_t = effective_mass_tangential(m_i, r_i, inertia_i, m_j, r_j, inertia_j, bool(scene.rotation))
-    eta_n = law.eta_n + damping(law.zeta_n, law.k_n, m_n)
     eta_s = law.eta_s + damping(law.zeta_s, law.k_s, m_t)
-    k_s = spring_of_map(law.k_s, eta_s, m_t, scene.dt) if law.k_s > 0.0 else 0.0
-    return spring_of_map(law.k_n, eta_n, m_n, scene.dt), k_s
+    return springs_of_kicks(law.k_s, dashpot_of_kick(eta_s, m_t, scene.dt), m_t, scene.dt)[-1]

@@ -24,8 +24,8 @@ class Term(IntEnum):
     TORQUE = 8  # given by the water torque
     LIFT = 9  # given by lift and the Magnus force
     SWITCH = 10  # given by a change of the timeline (gravity, a gate), by grains that enter or leave
-    # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap), and where
-    # the spring of elastic spheres is curved
+    # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap), where the
+    # spring of elastic spheres is curved, and with exact timing where grains have several partners
     STEP = 11
     START = 12  # energy at the first step: kinetic + spin + potential + springs
     FLOW = 13  # given by pressure, stress and acceleration of the water, beyond buoyancy in still water
@@ -35,7 +35,10 @@ class Term(IntEnum):
 
 N_TERM = len(Term)
 # Terms whose work of the second half step is still to be added.
-PENDING = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.FILM, Term.WALL)
+PENDING = (
+    Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.FILM, Term.WALL, Term.STEP, Term.DASH_N, Term.DASH_S,
+    Term.SLIDE,
+)  # fmt: skip
 LOSSES = (
     Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.ROLL, Term.RELEASED_N, Term.RELEASED_S, Term.RELEASED_R,
     Term.FILM,

@@ -37,9 +37,9 @@ _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
 # arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records, and the
 # energy account of a row, which checkpoints of earlier versions do not have
-_ZERO_UNLESS_USED = {
-    f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
-} | {"coupling/water/energy"}
+_ZERO_UNLESS_USED = {f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "overlap", "event")} | {
+    "coupling/water/energy"
+}
 _MOTION = ("x", "v", "omega")  # nan in a state where a grain is not there, zero in a checkpoint
 _MOTION_OF_BODIES = ("bodies/x", "bodies/v", "bodies/q", "bodies/momentum")
 _AT_ONCE = 1 << 14  # contacts
@@ -146,7 +146,7 @@ class _Reader:
         if len(np.unique(i * np.int64(last) + j)) < k:
             raise ValueError("a contact that occurs twice")
         rows = {name: (k, 3) for name in ("spring_s", "dash_s", "spring_r", "dash_r")}
-        rows |= {name: (k,) for name in ("dash_n", "f_n", "eta_n", "k_n", "rest_of_closing", "overlap")}
+        rows |= {name: (k,) for name in ("dash_n", "f_n", "eta_n", "k_n", "overlap")}
         found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
         event = np.zeros((k, N_EVENT))
         if "contacts/event" in self._arrays:
@@ -167,9 +167,8 @@ class _Reader:
             names["terms"] = "tally/books"
         given = {name: values[key] for name, key in names.items() if name != "walls" or key in values}
         lengths = {"terms": N_TERM, "pending": len(PENDING), "walls": N_WALL_IMPULSE * self._scene.n_wall}
-        for name in ("terms", "pending"):  # earlier versions have no term of walls
-            if len(given[name]) == lengths[name] - 1:
-                given[name] = [*given[name], 0.0]
+        for name in ("terms", "pending"):  # earlier versions lack the last terms
+            given[name] = [*given[name], *[0.0] * (lengths[name] - len(given[name]))]
         found: dict[str, Any] = {}
         for name, value in given.items():
             values = [float(one) for one in (value if name in lengths else [value])]

@@ -32,7 +32,9 @@ class GrainArrays(NamedTuple):
     image: Any  # periods crossed, (n, 2)
     tracked: Any  # whether its contacts are recorded, by id, (n,)
     n_touching: Any  # contacts in the last step, (n,)
-    film: Any  # force of films in this step [N], (rows of `PairArrays.f`, 4); (0, 0) without films
+    # force of films in this step [N], and between kicks, with exact timing, shifts times masses [kg m],
+    # (rows of `PairArrays.f`, 4); (0, 0) without either
+    film: Any
     fluid: Any  # water at each grain, columns of model.fluid, (n, N_SAMPLED); (0, 0) without a column
     impulse: Any  # impulse from the water [N s], and drag over slip, (n, N_IMPULSE); (0, 0) without
 

@@ -41,22 +41,23 @@ NORMAL = 51 * PITCH  # three rows [-]
 SLIP = 54 * PITCH  # slip velocity at the contact point, three rows [m/s]
 TWIST = 57 * PITCH  # angle the pair turned about its normal [rad]
 ETA_S = 58 * PITCH  # tangential dashpot [N s/m]
-K_N = 59 * PITCH  # stiffnesses of the map [N/m], only with exact timing
+K_N = 59 * PITCH  # stiffnesses of kick and map [N/m], only with exact timing
 K_S = 60 * PITCH
-# What an event comes to, and what the law does without one:
+# What the law does:
 F_N = 61 * PITCH  # normal force, and that of the spring alone [N]
 E_N = 62 * PITCH
-RAW = 63 * PITCH  # normal force before the limit, without corrections [N]
+RAW = 63 * PITCH  # normal force before the limit [N]
 # Only with exact timing:
 STATE = 64 * PITCH  # of the pair after this step (shared/contact_instants.py)
-GIVEN = 65 * PITCH  # 1 where the tangential force is in the next six rows: spring, and the rest [N]
-GIVEN_SPRING = 66 * PITCH
-GIVEN_REST = 69 * PITCH
-GIVEN_SLID = 72 * PITCH  # 1 where it slid
-UNTIL = 73 * PITCH  # time to the end of the force [s]; inf where it goes on, -inf where it ended before
-REST = 74 * PITCH  # correction of the closing speed that the next step makes [m/s]
-KIND = 75 * PITCH  # what the step does with the pair (shared/contact_instants.py)
-BEGINS, MAY_END = 76 * PITCH, 77 * PITCH  # lanes where contacts begin, and may end, one after the other
+KICK = 65 * PITCH  # normal force of the kick: half of the dashpot acts before it, half after [N]
+STORED = 66 * PITCH  # stiffness of which the energy is that of the spring [N/m]
+WAY, AFTER = 67 * PITCH, 68 * PITCH  # of the shear, as in shared/memory_rows.py
+MASS = 69 * PITCH  # effective mass [kg]
+TURNS = 71 * PITCH  # 1 where the pair turns as it passes: 0 of planes and faces
+CHANGE, SHIFT = 72 * PITCH, 73 * PITCH  # of the closing speed [m/s] and the overlap [m] between two kicks
+KIND = 74 * PITCH  # what happens between two kicks
+TOUCHES, MAY_PART = 75 * PITCH, 76 * PITCH  # lanes that touch, and may part, one after the other
+K_LAW = 77 * PITCH  # normal stiffness of the law, where materials differ [N/m]
 
 # Only with elastic spheres, in place of those of exact timing (hertz_contact.py):
 OVERLAP_OLD = 64 * PITCH  # memory: overlap in the last step [m], and force of the spring then [N]
@@ -69,26 +70,29 @@ SOFT_OLD = 70 * PITCH
 SCALE = 71 * PITCH  # factor of the tangential spring [-]
 
 # Events: contacts that begin or may end, packed into lanes of their own (contact_events.py)
-EVENT = 78 * PITCH  # twelve rows as from OVERLAP on
-N_INPUT = 12
-ETA_N_OF_EVENT = 90 * PITCH
-STATE_OF_EVENT = 91 * PITCH
-SPRING_OF_EVENT = 92 * PITCH  # memory, four rows
-DASH_OF_EVENT = 96 * PITCH  # memory, four rows
-MASS_OF_EVENT = 100 * PITCH  # of i and of j, two rows each [kg], [kg m2], [m]
-INERTIA_OF_EVENT = 102 * PITCH
-RADIUS_OF_EVENT = 104 * PITCH
-CURVE_OF_EVENT = 106 * PITCH  # of `contact_map.passing` [m/s2]
-ANSWER = 107 * PITCH  # fourteen rows as from F_N on
-N_ANSWER = 14
+EVENT = 78 * PITCH
+STATE_E, OVERLAP_E, CLOSING_E, F_N_E = (EVENT + k * PITCH for k in range(4))
+MASS_E, ETA_N_E, K_N_E, WAY_E, AFTER_E = (EVENT + k * PITCH for k in range(4, 9))
+MASS_S_E, K_S_E, ETA_S_E = (EVENT + k * PITCH for k in range(9, 12))
+SPRING_E, SHEAR_E, SLIP_E = EVENT + 12 * PITCH, EVENT + 15 * PITCH, EVENT + 18 * PITCH  # three rows each
+NORMAL_E = EVENT + 21 * PITCH  # three rows
+ARM_E = EVENT + 24 * PITCH  # of i and of j
+# in their place the answers
+PUSH_E, SPENT_E, SLID_E, WHEN_E = (
+    EVENT + 26 * PITCH,
+    EVENT + 29 * PITCH,
+    EVENT + 31 * PITCH,
+    EVENT + 32 * PITCH,
+)
+LAW_E = EVENT + 33 * PITCH  # stiffnesses and friction, three rows, where materials differ
+SIDEWAYS = EVENT + 36 * PITCH  # a group of four: shift of i times its mass, and nothing [kg m]
+WHEN = EVENT + 40 * PITCH  # of a pair: time of touch or release after the step [s]
 # Only where materials differ:
 MU = 121 * PITCH  # friction of the pair [-]
 MINDLIN = 122 * PITCH  # tangential stiffness of elastic spheres over K sqrt(overlap) [-]
-MU_OF_EVENT = 123 * PITCH
-K_N_OF_EVENT = 124 * PITCH  # of the law, not of the map [N/m]
-K_S_OF_EVENT = 125 * PITCH
 # Only in scenes with walls:
 SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its books held before [J]
 KEPT = 127 * PITCH
-SIZE = 133 * PITCH
+PUSH = 133 * PITCH  # tangential impulse of an event on i, three rows [N s]
+SIZE = 136 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

@@ -10,7 +10,7 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays
 from ryusa.engine.cpu.attraction import attract, make_energy_of_attraction
 from ryusa.engine.cpu.contact_rows import springs_of_row
-from ryusa.engine.cpu.exact_contact import keep_states, make_compute_exactly, spring_energy_of_maps
+from ryusa.engine.cpu.exact_contact import keep_states, make_compute_kicks, spring_energy_of_kicks
 from ryusa.engine.cpu.hertz_contact import make_compute_hertz, spring_energy_hertz
 from ryusa.engine.cpu.pair_batch import (
     make_compute,
@@ -38,7 +38,7 @@ TERMS = tuple(
     int(account)
     for account in (Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.RELEASED_N, Term.RELEASED_S, Term.STEP)
 )
-WALL = int(Term.WALL)
+WALL, STEP = int(Term.WALL), int(Term.STEP)
 
 
 @inner(fastmath=FAST)
@@ -91,7 +91,7 @@ def spring_energy(
 
 @cache
 def make_block_forces(kind: ForcesKind) -> Any:
-    """Build the piece for the forces of contacts: block_forces(b, b_0, step, t, hdt, last, work, held)."""
+    """Build the piece for the forces of contacts, block_forces."""
     plane, rotation, film, rebound = kind.plane_case, kind.rotation, bool(kind.film), bool(kind.rebound)
     exact, hertz, walled, adhesive = (
         bool(one) for one in (kind.exact, kind.hertz, kind.walls, kind.adhesive)
@@ -99,21 +99,22 @@ def make_block_forces(kind: ForcesKind) -> Any:
     short = bool(kind.plane_case) and not kind.rolling and not kind.events
     optional = bool(kind.rolling or kind.events or kind.film)
     filter_pairs, scatter = make_filter_pairs(walled), make_scatter(exact, short)
-    compute = (make_compute_hertz if hertz else make_compute_exactly if exact else make_compute)(
+    compute = (make_compute_hertz if hertz else make_compute_kicks if exact else make_compute)(
         bool(kind.plane_case), bool(kind.mixed)
     )
     energy_of_attraction: Any = make_energy_of_attraction(hertz) if adhesive else None
     gather = make_gather(M.OF_MAPS * kind.exact + M.HERTZ * kind.hertz, short, walled)
-    immersed_dashpots: Any = make_immersed_dashpots(exact, hertz) if rebound else None
+    immersed_dashpots: Any = make_immersed_dashpots(hertz) if rebound and not exact else None
     optional_physics: Any = make_optional_physics(kind) if optional else None
 
     @compiled(fastmath=FAST)
     def block_forces(
-        b: int, b_0: int, step: int, t: float, hdt: float, last: bool, work: Any, held: Any
+        b: int, b_0: int, step: int, t: float, hdt: float, last: bool, reach: float, work: Any, held: Any
     ) -> None:
         """Forces of every pair that block b owns, batch by batch of those that touch.
 
-        `b_0` is the first block of the thread, with whose place in the workspace of faces it begins.
+        `b_0` is the first block of the thread, with whose place in the workspace of faces it begins; faces up
+        to `reach` [m] from a grain are met.
         """
         # One function: what a kind goes without is taken out of it before it is compiled
         held, work = taken(held), taken(work)
@@ -143,7 +144,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
         if walled:
             met = met[candidates.first[b_0] :]  # the same rows for all blocks of a thread stay in its cache
             given = stats[S.PENDING_WALL]
-            resolve_walls(b, reach_on, n_solid, c, grains, walls, candidates, met, stats)
+            resolve_walls(b, max(reach_on, reach), n_solid, c, grains, walls, candidates, met, stats)
         k = candidates.first[b]
         end = k + candidates.count[b]
         waiting = 0
@@ -170,15 +171,9 @@ def make_block_forces(kind: ForcesKind) -> Any:
             if walled:
                 add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
                 keep_books(face_lanes, selected, slot, met, batch)
-            if rebound:
+            if rebound and not exact:
                 immersed_dashpots(choice, m, selected, c, material, table, grains, candidates, batch)
-            if hertz or not exact:
-                compute(choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
-            else:
-                compute(
-                    rotation, choice, m, lanes, hdt, stats[S.OVERLAP_MAX], selected, i_of, j_of,
-                    mass, inertia, w, ids, material, table, c, batch,
-                )  # fmt: skip
+            compute(choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
             if adhesive:
                 attract(choice, m, hdt, selected, c, material, table, grains, candidates, batch)
             if walled:
@@ -190,7 +185,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
                 )  # fmt: skip
             if walled:
                 given, pending = book_walls(
-                    given, pending, face_lanes, selected, hdt, c, i_of, x, slot, walls.faces.poses,
+                    given, pending, face_lanes, selected, hdt, c[P.DT], c, i_of, x, slot, walls.faces.poses,
                     walls.faces.motion, met, impulse, batch,
                 )  # fmt: skip
             if exact:
@@ -208,6 +203,10 @@ def make_block_forces(kind: ForcesKind) -> Any:
             for l in range(B.LANES):
                 total += batch[B.WORK + row * B.PITCH + l]
             account[TERMS[row]] += total
+            if exact and row != B.N_WORK - 1:
+                account[STEP] += total
+        if exact:
+            account[STEP] -= given
         if last:
             if hertz:
                 if walled:
@@ -220,9 +219,9 @@ def make_block_forces(kind: ForcesKind) -> Any:
                 else:
                     found = spring_energy(b, n_solid, c, candidates, None)
             elif walled:
-                found = spring_energy_of_maps(b, n_solid, candidates, met)
+                found = spring_energy_of_kicks(b, n_solid, candidates, met)
             else:
-                found = spring_energy_of_maps(b, n_solid, candidates, None)
+                found = spring_energy_of_kicks(b, n_solid, candidates, None)
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = found
             if adhesive:
                 stats[S.SPRING_N] -= energy_of_attraction(b, choice, c, material, table, grains, candidates)

@@ -138,7 +138,7 @@ class CpuEngine:
         by_id = self._layout.grains_by_id(state)
         by_id.n_touching[:] = contacts_of_grains(memory, n)
         resumed = own is not None and not changed and not len(dropped)
-        self._travel = 0.0
+        self._travel, self._kicked = 0.0, False
         if own is not None and resumed:
             by_id.x[:n, :3] = own.array("x_listed", (n, 3), _FARTHEST)
             self._travel = own.number("travel", 0.0, np.inf)
@@ -273,13 +273,14 @@ class CpuEngine:
         while n_steps > 0:
             pieces, held = self._pieces.of_step, [self._held(k) for k in range(threads)]
             reach, count, faces = film_reach(layout.scene), np.zeros(1, np.int64), layout.walls.faces
-            shared = (threads, n_steps, self._step, self._travel, reach, count, pieces)
+            begin = (threads, n_steps, self._step, self._kicked, self._travel, reach)
+            shared = (*begin, count, pieces, *self._pieces.between_kicks)
             own = [(one, faces, self._bodies, self._work[k]) for k, one in enumerate(held)]
             schedule = self._candidates.schedule
             others = [
                 self._pool.submit(run, k, *shared, *own[k], schedule) for k in range(1, threads) if self._pool
             ]
-            done, self._travel, stop = run(0, *shared, *own[0], schedule)
+            done, self._travel, stop, self._kicked = run(0, *shared, *own[0], schedule)
             for other in others:
                 other.result()
             self._step += done
@@ -299,11 +300,8 @@ class CpuEngine:
                     unsafe_of(self._grains, self._n, self._parameters, self._smallest, self._step, self._t)
                 )
             elif stop:
-                return Flags(
-                    fault_of(
-                        self._accounts.stats, self._parameters, layout.scene, self._grains, self._step - 1
-                    )
-                )
+                at = self._step - (not self._kicked)  # of a step that is done, or of the kick of the next
+                return Flags(fault_of(self._accounts.stats, self._parameters, layout.scene, self._grains, at))
         return Flags()
 
     def _held(self, thread: int) -> StepArrays:

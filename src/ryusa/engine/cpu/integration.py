@@ -32,13 +32,22 @@ from ryusa.laws.grain_step import (
     translation_step,
     unwrapped,
 )
+from ryusa.model.tally import Term
+
+STEP = int(Term.STEP)
+
+
+@inner(fastmath=FAST, forceinline=True)
+def inner_product(one: Any, other: Any) -> float:
+    """Inner product of two vectors, the first three of their rows."""
+    x, y, z = component(one, 0), component(one, 1), component(one, 2)
+    return x * component(other, 0) + y * component(other, 1) + z * component(other, 2)
 
 
 @inner(fastmath=FAST, forceinline=True)
 def square_length(row: Any) -> float:
     """Square of the length of a vector, the first three of a row."""
-    x, y, z = component(row, 0), component(row, 1), component(row, 2)
-    return x * x + y * y + z * z
+    return inner_product(row, row)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -69,14 +78,17 @@ def gather_incoming(i: int, active: Any, incoming: Any, incoming_start: Any, f: 
 def make_integrate(kind: MotionKind) -> Any:
     """Build the piece that moves the grains of a block: integrate(lo, hi, begins, last, b, work, held)."""
     plane, rotation, counted = bool(kind.plane_case), bool(kind.rotation), bool(kind.counted)
-    water, column, of_bodies = bool(kind.water), bool(kind.column), bool(kind.bodies)
+    water, column, of_bodies, exact = bool(kind.water), bool(kind.column), bool(kind.bodies), bool(kind.exact)
     forces_of_water: Any = make_forces_of_water(column, kind.laws) if water else None
     add_fluid = make_add_fluid(column, bool(kind.film), kind.laws.torque != 0)
     book_fluid_work = make_book_fluid_work(column, bool(kind.film), kind.laws.torque != 0)
 
     @compiled(fastmath=FAST)
     def integrate(lo: int, hi: int, begins: bool, last: bool, b: int, work: Any, held: Any) -> None:
-        """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+        """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step.
+
+        With exact timing they get their velocities alone: they move after the shear of their contacts.
+        """
         # One function: the state of a grain stays in registers. Members of bodies only gather
         held, work = taken(held), taken(work)
         c, grains, pairs, batch = held.c, held.grains, held.pairs, work.water
@@ -94,7 +106,7 @@ def make_integrate(kind: MotionKind) -> Any:
         f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
         dt, film, n_touching = c[P.DT], grains.film, grains.n_touching
         half = 0.0 if begins else 0.5 * dt
-        speed_2 = spin_2 = velocity_change_2 = 0.0
+        speed_2 = spin_2 = velocity_change_2 = work_before = work_after = 0.0
         gravity = vec4_of(c[P.G_X], 0.0 if plane else c[P.G_Y], c[P.G_Z], 0.0)
         close_fluid_interval(account, stats)
         if last:
@@ -114,6 +126,7 @@ def make_integrate(kind: MotionKind) -> Any:
             fill4(f, 8 * i, 0.0)
             fill4(f, 8 * i + 4, 0.0)
             x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
+            pull, twist = push, turn
             drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
             if water:
                 push, turn, drag = add_fluid(i, l, push, turn, film, batch)
@@ -128,6 +141,9 @@ def make_integrate(kind: MotionKind) -> Any:
                     i, l, half, dt, before, after, spin, whirl, grains.impulse, film,
                     batch,
                 )  # fmt: skip
+            if exact:
+                work_before += inner_product(pull, before) + inner_product(twist, spin)
+                work_after += inner_product(pull, after) + inner_product(twist, whirl)
             if last:
                 stats[S.KINETIC] += kinetic_energy_of_row(1.0 / inverse, before, after)
                 stats[S.SPIN] += kinetic_energy_of_row(inertia[i], spin, whirl) if rotation else 0.0
@@ -135,7 +151,8 @@ def make_integrate(kind: MotionKind) -> Any:
                     m_weight[i], c[P.G_X], c[P.G_Y], c[P.G_Z], unwrapped(x[i, 0], image[i, 0], c[P.PERIOD_X]),
                     unwrapped(x[i, 1], image[i, 1], c[P.PERIOD_Y]), x[i, 2],
                 )  # fmt: skip
-            write4(x, 4 * i, x_new)
+            if not exact:
+                write4(x, 4 * i, x_new)
             write4(v, 8 * i, after)
             fast, fast_spin = square_length(after), 0.0
             if rotation:
@@ -147,6 +164,9 @@ def make_integrate(kind: MotionKind) -> Any:
             velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
         if water:
             end_fluid_work(batch, account, stats)
+        if exact:
+            account[STEP] += half * work_before
+            stats[S.PENDING_STEP] += 0.5 * dt * work_after
         stats[S.SPEED_MOVED], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
         stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
 

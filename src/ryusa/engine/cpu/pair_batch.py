@@ -67,9 +67,12 @@ def make_filter_pairs(walled: bool) -> Any:
 
 
 @cache
-def make_gather(springs: int, short: bool, walled: bool) -> Any:
-    """Build gather for a kind of springs, the length of rows (contact_rows.py), and scenes with faces."""
-    hertz, row_to_lane = springs == M.HERTZ, make_row_to_lane(short)
+def make_gather(springs: int, short: bool, walled: bool, begins: bool = True) -> Any:
+    """Build gather for a kind of springs, the length of rows (contact_rows.py), and scenes with faces.
+
+    It empties the rows of pairs that did not touch and gives them their springs, if it `begins` contacts.
+    """
+    hertz, maps, row_to_lane = springs == M.HERTZ, springs == M.OF_MAPS, make_row_to_lane(short)
     begin_row = make_begin_row(springs)
 
     @inner(fastmath=FAST)
@@ -90,12 +93,14 @@ def make_gather(springs: int, short: bool, walled: bool) -> Any:
             i, j = i_of[k], j_of[k]
             if table is not None:
                 a, b = material_of(i, ids, material), material_of(j, ids, material)
-                if not touching[k]:
+                if begins and not touching[k]:
                     begin_row(k, i, j, rotation, table[a, b], mass, x, inertia, eta, rows)
                 batch[B.MU + l] = table[a, b, P.MU]
                 if hertz:
                     batch[B.MINDLIN + l] = table[a, b, P.MINDLIN]
-            elif not touching[k]:
+                else:
+                    batch[B.K_LAW + l] = table[a, b, P.K_N]
+            elif begins and not touching[k]:
                 begin_row(k, i, j, rotation, c, mass, x, inertia, eta, rows)
             if not walled:
                 set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
@@ -118,6 +123,8 @@ def make_gather(springs: int, short: bool, walled: bool) -> Any:
             batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
             if springs:
                 batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
+            if maps:
+                batch[B.STORED + l], batch[B.MASS + l] = eta[e, M.STORED], eta[e, M.MASS]
             if hertz:  # a row of its own, since a loop reads all four of a group or none
                 batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
         if walled:
@@ -132,8 +139,12 @@ def make_gather(springs: int, short: bool, walled: bool) -> Any:
             batch[B.K_N + l] = batch[B.K_S + l] = 1.0
             if hertz:
                 batch[B.OVERLAP_OLD + l] = 0.0
+            if maps:
+                batch[B.STORED + l] = batch[B.MASS + l] = 1.0
             if table is not None:
                 batch[B.MU + l] = batch[B.MINDLIN + l] = 1.0
+                if maps:
+                    batch[B.K_LAW + l] = 1.0
             batch[B.SEPARATION + 4 * l] = B.FAR
         return whole
 

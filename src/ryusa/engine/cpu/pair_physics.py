@@ -14,8 +14,9 @@ from ryusa.engine.cpu.pair_batch import overlap_of_lane
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared import record_fields as R
+from ryusa.engine.shared.contact_instants import APART, MAY_PART, TOUCHES, is_held
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
-from ryusa.engine.shared.dashpots import dashpot_immersed, dashpot_immersed_hertz, spring_immersed
+from ryusa.engine.shared.dashpots import dashpot_immersed, dashpot_immersed_hertz
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
@@ -25,11 +26,14 @@ from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model.contacts import N_EVENT
+from ryusa.model.tally import Term
+
+STEP = int(Term.STEP)
 
 
 @cache
-def make_immersed_dashpots(exact: bool, hertz: bool) -> Any:
-    """Build immersed_dashpots for the kind of springs."""
+def make_immersed_dashpots(hertz: bool) -> Any:
+    """Build immersed_dashpots for the kind of springs that begin and end at steps."""
 
     @inner(fastmath=FAST)
     def immersed_dashpots(
@@ -57,11 +61,8 @@ def make_immersed_dashpots(exact: bool, hertz: bool) -> Any:
                 of = table[material_of(i, grains.ids, material), material_of(j, grains.ids, material)]
             if hertz:
                 eta_n = dashpot_immersed_hertz(choice, closing, i, j, of, grains.m, grains.w)
-            elif not exact:
-                eta_n = dashpot_immersed(choice, closing, i, j, of, grains.m, grains.w)
             else:
-                eta_n, k_n = spring_immersed(choice, closing, i, j, of, grains.m, grains.w)
-                batch[B.K_N + l] = candidates.eta[k, M.K_N] = k_n
+                eta_n = dashpot_immersed(choice, closing, i, j, of, grains.m, grains.w)
             batch[B.RELATIVE_VELOCITY + 4 * l + 3] = candidates.eta[k, M.ETA_N] = eta_n
 
     return immersed_dashpots
@@ -83,24 +84,27 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
             batch[B.CLOSING + l],
             grains.n_touching,
         )
+        if exact and was and not touching and record[R.OVERLAP_MAX] == 0.0:
+            record[R.PARTNER] = -1.0  # it would have touched, but others moved the grains
         if touching and not was:
             record[:] = 0.0
             begin_record(
                 plane, choice.events, record, t, dt, overlap, closing, slip, normal, i, j, n, grains,
                 c[P.PERIOD_X], c[P.PERIOD_Y],
             )  # fmt: skip
-        goes_on, tension, f_last, until = touching, choice.tension, record[R.T_PART], math.inf
-        if exact:  # a record ends after the last force, which may act after the grains parted
-            goes_on, until = batch[B.STATE + l] > 0.0, batch[B.UNTIL + l]
-            tension, f_last = 0, 1.0 if until == 0.0 else 0.0
-        if goes_on:
-            t_end = record[R.T_END]
+        tension, f_last, t_end = choice.tension, record[R.T_PART], record[R.T_END]
+        f_n = batch[B.SPRING + 4 * l + 3]
+        if exact:  # the end of the force is known, but where others pushed the grains apart
+            tension, f_last = 0, 1.0 if is_held(batch[B.WAS_TOUCHING + l]) else 0.0
+            f_n = batch[B.KICK + l]
+            closing -= 0.0 if touching else f_n * dt / batch[B.MASS + l]  # half of a dashpot may still act
+        if touching:
             keep_record(
-                record, t, dt, overlap, batch[B.SPRING + 4 * l + 3], batch[B.RAW + l], force,
-                batch[B.SLIDES + l] > 0.0, n_touching[i] > 1 or (j < n and n_touching[j] > 1),
+                record, t, dt, overlap, f_n, batch[B.RAW + l], force, batch[B.SLIDES + l] > 0.0,
+                n_touching[i] > 1 or (j < n and n_touching[j] > 1),
             )  # fmt: skip
-            if exact and until < math.inf:
-                record[R.T_END] = t + until if until >= 0.0 else t_end
+            if exact and not is_held(batch[B.STATE + l]):
+                record[R.T_END] = t_end
         elif was and record[R.PARTNER] >= 0.0:
             end_record(
                 plane, tension, record, f_last, t, overlap, closing, slip, normal, i, grains.v,
@@ -111,9 +115,48 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
 
 
 @cache
+def make_records_between(plane: bool) -> Any:
+    """Build records_between, the records of m lanes between two kicks (contact_shear.py)."""
+
+    @inner(fastmath=FAST)
+    def records_between(
+        choice: LawChoice, m: int, n: int, t: float, selected: Any, c: Any, grains: GrainArrays,
+        candidates: CandidateArrays, batch: Any,
+    ) -> None:  # fmt: skip
+        """Begin the records of lanes that touch, add impulses, and keep the end of the force."""
+        rows, width, dt = candidates.rows, candidates.rows.shape[1], c[P.DT]
+        for l in range(m):
+            kind, was, when = batch[B.KIND + l], batch[B.WAS_TOUCHING + l], batch[B.WHEN + l]
+            if not (is_held(was) or kind == TOUCHES):
+                continue
+            k = selected[l]
+            record, i, j = rows[k, width - N_EVENT :], candidates.i[k], candidates.j[k]
+            if was == APART:
+                record[:] = 0.0
+                normal = batch[B.NORMAL + l], batch[B.NORMAL + B.PITCH + l], batch[B.NORMAL + 2 * B.PITCH + l]
+                slip = batch[B.SLIP + l], batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
+                begin_record(
+                    plane, choice.events, record, t, dt, batch[B.OVERLAP + l], batch[B.CLOSING + l], slip,
+                    normal, i, j, n, grains, c[P.PERIOD_X], c[P.PERIOD_Y],
+                )  # fmt: skip
+            if record[R.PARTNER] < 0.0:
+                continue
+            record[R.IMPULSE_N] -= batch[B.MASS + l] * batch[B.CHANGE + l]
+            for a in range(3):
+                record[R.IMPULSE + a] += batch[B.FORCE + 4 * l + a] * dt
+            if kind == MAY_PART and when < math.inf:
+                record[R.T_END] = t + when
+            if batch[B.SLIDES + l] > 0.0 and when < math.inf:
+                record[R.T_SLIDE] += dt - when if kind == TOUCHES else when
+
+    return records_between
+
+
+@cache
 def make_optional_physics(kind: ForcesKind) -> Any:
     """Build optional_physics for what the scene has."""
     rolling, events, film, walled = (bool(one) for one in (kind.rolling, kind.events, kind.film, kind.walls))
+    exact = bool(kind.exact)
     record_of_lane: Any = make_record_of_lane(bool(kind.plane_case), bool(kind.exact)) if events else None
 
     @inner(fastmath=FAST)
@@ -143,6 +186,11 @@ def make_optional_physics(kind: ForcesKind) -> Any:
             if rolling:
                 if table is not None:
                     of = table[material_of(i, grains.ids, material), material_of(j, grains.ids, material)]
+                sign = 1.0 if rolling_alike(choice.rolling) else -1.0
+                if exact:  # the works of torques, which STEP has from the kicks, are booked here
+                    for a in range(3):
+                        old = row[M.SPRING_R + a] + row[M.DASH_R + a]
+                        account[STEP] -= hdt * old * (spin_i[a] + sign * spin_j[a])
                 if touching:
                     turned = (
                         normal[1] * force[2] - normal[2] * force[1],
@@ -156,7 +204,9 @@ def make_optional_physics(kind: ForcesKind) -> Any:
                         (w[j, 3], grains.m[j], grains.inertia[j], share_j),
                         normal, turned, spin_i, spin_j, account,
                     )  # fmt: skip
-                    sign = 1.0 if rolling_alike(choice.rolling) else -1.0
+                    if exact:
+                        for a, r in enumerate((r_x, r_y, r_z)):
+                            account[STEP] -= hdt * r * (spin_i[a] + sign * spin_j[a])
                     for k, r in enumerate((r_x, r_y, r_z)):
                         batch[B.TORQUE_I + 4 * l + k] += r
                         batch[B.TORQUE_J + 4 * l + k] += sign * r

@@ -10,9 +10,11 @@ from ryusa.compiled.beside import Beside, Wanted
 from ryusa.compiled.borrow import borrow
 from ryusa.compiled.piece import LentType, Piece, call, lend
 from ryusa.engine.cpu import prune_schedule as K
+from ryusa.engine.cpu.advance import make_advance
 from ryusa.engine.cpu.arrays import StepArrays, Workspace
 from ryusa.engine.cpu.barrier import wait
 from ryusa.engine.cpu.block_forces import make_block_forces
+from ryusa.engine.cpu.contact_shear import make_contact_shear
 from ryusa.engine.cpu.integration import make_integrate, post
 from ryusa.engine.cpu.prune import make_prune
 from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, plan_prune, steps_ahead
@@ -50,7 +52,7 @@ class PiecesOfStep:
 
     Attributes
     ----------
-    forces : what the forces of contacts are compiled from and for.
+    forces, shear : what the forces of contacts, and their shear, are compiled from and for.
     """
 
     def __init__(self, variant: KernelVariant, choice: LawChoice, held: StepArrays, work: Workspace) -> None:
@@ -61,9 +63,17 @@ class PiecesOfStep:
         # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
         self._prune = make_prune(bool(variant.walls))
         self._move_bodies = make_move_bodies(moving) if variant.bodies else None
-        takes = integer, integer, integer, number, number, flag, *lent
-        self.forces = Wanted(make_block_forces, (forces_kind(variant, choice),), takes)
-        self._beside = Beside([self.forces, Wanted(make_integrate, (moving,), self._moves)])
+        takes, kind = (
+            (integer, integer, integer, number, number, flag, number, *lent),
+            forces_kind(variant, choice),
+        )
+        self.forces = Wanted(make_block_forces, (kind,), takes)
+        wanted = [self.forces, Wanted(make_integrate, (moving,), self._moves)]
+        self.shear = None
+        if variant.exact:
+            self.shear = Wanted(make_contact_shear, (kind,), (integer, integer, number, number, *lent))
+            wanted += [self.shear, Wanted(make_advance, (moving,), self._moves)]
+        self._beside = Beside(wanted)
 
     @cached_property
     def prune(self) -> Piece:
@@ -73,9 +83,19 @@ class PiecesOfStep:
     @cached_property
     def of_step(self) -> StepPieces:
         """All pieces of a step."""
-        forces, move = self._beside.pieces()
+        forces, move, *_ = self._beside.pieces()
         bodies = None if self._move_bodies is None else self._move_bodies.pieces.piece(*self._moves)
         return StepPieces(self.prune, forces, move, bodies)
+
+    @cached_property
+    def between_kicks(self) -> tuple[Piece | None, Piece | None]:
+        """Shear of contacts and motion of grains; None where contacts begin and end at steps."""
+        _, _, *between = self._beside.pieces()
+        return (between[0], between[1]) if between else (None, None)
+
+
+AHEAD = 1.1  # displacements of the fastest grain in a step by which its shear may move it
+REACH = 2.5  # displacements of the fastest grain in a step within which pairs are looked at that may touch
 
 
 @kernel(nogil=True, fastmath=FAST)
@@ -84,20 +104,26 @@ def run(
     n_threads: int,
     n_steps: int,
     step: int,
+    kicked: bool,
     travel: float,
     film_reach: float,
     count: Any,
     pieces: StepPieces,
+    shear: Any,
+    advance: Any,
     held: StepArrays,
     faces: Any,
     bodies: Any,
     work: Workspace,
     schedule: Any,
-) -> tuple[int, float, int]:
-    """Do up to n_steps steps; all threads return the same (steps done, travel, stop).
+) -> tuple[int, float, int, bool]:
+    """Do up to n_steps steps; all threads return the same (steps done, travel, stop, kicked).
 
     `film_reach` is that of films [m], 0 without. `held` is the same for all threads but for its `spare`; its
-    `faces` and `bodies` are arguments too, so that what a scene goes without is not compiled.
+    `faces` and `bodies` are arguments too, as `shear` and `advance` are, so that what a scene goes without is
+    not compiled. With exact
+    timing a step has two halves, kicks and shears, and a list of pairs that is renewed is so between them:
+    `kicked` tells whether the first half is done.
     """
     # One function: split into four, W1 and W2 at 2,000 grains took 1 % longer (design/lab/0005)
     held, work, moving = borrow(held), borrow(work), borrow(faces)
@@ -114,16 +140,53 @@ def run(
     target = done = 0
     stop = STOP_DONE
     while done < n_steps:
-        if 2.0 * travel > skin:
+        last, begins = done == n_steps - 1, step == 0
+        t, hdt = t_zero + step * dt, 0.0 if begins else 0.5 * dt
+        ahead = 0.0  # of a displacement, by which grains go on before the list is looked at again
+        fastest = change = reach = 0.0
+        for b in range(n_block):
+            fastest = max(fastest, stats[b, S.SPEED_MAX])
+        if shear is not None:
+            reach = REACH * fastest * dt
+            if faces is not None:
+                reach += REACH * moving.speed * dt
+            if not kicked:
+                if faces is not None:
+                    set_poses(t, dt, moving.motion, moving.poses)
+                for after in range(2):
+                    for b in range(b_0, b_1):
+                        if not after:
+                            call(pieces.forces, (b, b_0, step, t, hdt, last, reach, lent_work, lent))
+                        q = b if after else b - span
+                        soon = b_0 + span <= q < b_1 - span
+                        if soon != (after == 1):
+                            call(
+                                pieces.move,
+                                (block_start[q], block_start[q + 1], begins, last, q, lent_work, lent),
+                            )
+                        if after:
+                            post(stats[b])
+                    target = wait(count, n_threads, target)
+                kicked = True
+            fastest = 0.0
+            for b in range(n_block):
+                fastest, change = (
+                    max(fastest, stats[b, S.SPEED_MAX]),
+                    max(change, stats[b, S.VELOCITY_CHANGE_MAX]),
+                )
+                if stats[b, S.FAULT_POSTED] != FAULT_NONE:
+                    stop = STOP_FAULT
+            if stop != STOP_DONE:
+                break
+            ahead = AHEAD * fastest * dt
+        if 2.0 * (travel + ahead) > skin:
             stop = STOP_LIST
             break
         if faces is not None:
-            set_poses(t_zero + step * dt, dt, moving.motion, moving.poses)
-        if own[K.APPROACH] > own[K.SKIN] or own[K.SINCE] >= own[K.LASTS]:
+            set_poses(t, dt, moving.motion, moving.poses)
+        soonest = own[K.APPROACH] + (2.0 * change * dt + 0.1 * ahead)
+        if soonest > own[K.SKIN] or own[K.SINCE] >= own[K.LASTS]:
             plan_prune(own, listing_cost)
-            fastest = 0.0
-            for b in range(n_block):
-                fastest = max(fastest, stats[b, S.SPEED_MAX])
             own[K.LASTS] = steps_ahead(own, fastest * dt)
             reach_on = ROUNDED_UP * own[K.SKIN] + film_reach
             for b in range(b_0, b_1):
@@ -140,22 +203,29 @@ def run(
             if stop != STOP_DONE:
                 own[K.APPROACH] = np.inf
                 break
-        last, begins = done == n_steps - 1, step == 0
-        t = t_zero + step * dt
-        hdt = 0.0 if begins else 0.5 * dt
         # A block moves as soon as the blocks within `span` have their forces, while its grains are still in
         # the cache. Those that share pairs with blocks of other threads move after the barrier.
         for after in range(2):
             for b in range(b_0, b_1):
-                if not after:
-                    call(pieces.forces, (b, b_0, step, t, hdt, last, lent_work, lent))
                 q = b if after else b - span
                 soon = b_0 + span <= q < b_1 - span
-                if soon != (after == 1):
-                    call(pieces.move, (block_start[q], block_start[q + 1], begins, last, q, lent_work, lent))
+                if shear is not None:
+                    if not after:
+                        call(shear, (b, b_0, t, reach, lent_work, lent))
+                    if soon != (after == 1):
+                        call(advance, (block_start[q], block_start[q + 1], begins, last, q, lent_work, lent))
+                else:
+                    if not after:
+                        call(pieces.forces, (b, b_0, step, t, hdt, last, 0.0, lent_work, lent))
+                    if soon != (after == 1):
+                        call(
+                            pieces.move,
+                            (block_start[q], block_start[q + 1], begins, last, q, lent_work, lent),
+                        )
                 if after and bodies is None:
                     post(stats[b])
             target = wait(count, n_threads, target)
+        kicked = False
         if bodies is not None:
             n_body = len(bodies.order)
             for b in range(b_0, b_1):
@@ -192,4 +262,4 @@ def run(
     if thread == 0:
         for k in range(K.N_SCHEDULE):
             schedule[k] = own[k]
-    return done, travel, stop
+    return done, travel, stop, kicked

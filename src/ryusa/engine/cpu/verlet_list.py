@@ -165,7 +165,9 @@ class BlockLayout(Layout):
             slab, span, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
             incoming, aligned(rows, 8),
         )  # fmt: skip
-        grains = grains._replace(film=np.zeros((rows, 4) if self.variant.film else (0, 0)))
+        grains = grains._replace(
+            film=aligned(rows, 4) if self.variant.film or self.variant.exact else np.zeros((0, 0))
+        )
         return ListedPairs(grains, pairs, listed, place_of, min((i for i in outside if i >= 0), default=-1))
 
     def place_memory(

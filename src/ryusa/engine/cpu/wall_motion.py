@@ -47,10 +47,12 @@ def add_drift(face_lanes: Any, selected: Any, slot: Any, motion: Any, met: Any, 
 
 @inner(fastmath=FAST, forceinline=True)
 def book_walls(
-    given: float, pending: float, face_lanes: Any, selected: Any, hdt: float, c: Any, i_of: Any, x_of: Any,
-    slot: Any, p: Any, motion: Any, met: Any, impulse: Any, batch: Any,
+    given: float, pending: float, face_lanes: Any, selected: Any, hdt: float, touched: float, c: Any,
+    i_of: Any, x_of: Any, slot: Any, p: Any, motion: Any, met: Any, impulse: Any, batch: Any,
 ) -> tuple[float, float]:  # fmt: skip
     """Add the impulses on walls of the faces in a batch to those of their block, (n_wall, N_IMPULSE).
+
+    `touched` is the time of touch that each counts [s].
 
     Returns `given` and `pending` with the work of walls that move over the half interval before this step,
     and over that after it, which is booked with the next one, as that of drag [J]. The mirrored grain has the
@@ -73,7 +75,7 @@ def book_walls(
         x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
         y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
         z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
-        impulse[w, TOUCHED] += dt
+        impulse[w, TOUCHED] += touched
         impulse[w, 0] -= f_x * dt
         impulse[w, 1] -= f_y * dt
         impulse[w, 2] -= f_z * dt

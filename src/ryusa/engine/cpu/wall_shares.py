@@ -6,6 +6,7 @@ from typing import Any
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.arrays import CandidateArrays
+from ryusa.engine.shared.contact_instants import NOTHING, TOUCHES
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.model.walls import CELLS, DOUBLINGS, EXACT_SHARE, LEAST_SHARE, LIKE_MOST, SWEEPS
 
@@ -112,6 +113,39 @@ def share_forces(
             met[s, F.BY] = -max(met[s, F.FORCE] / met[s, F.OVERLAP], LEAST_SHARE)
 
 
+@inner(fastmath=FAST)
+def leave_to_shares(
+    b: int, face_lanes: Any, selected: Any, candidates: CandidateArrays, met: Any, batch: Any
+) -> None:  # fmt: skip
+    """Let no face of a batch be touched ahead beside one that the grain is held by and whose force it shares.
+
+    Its part of the force is not known before it has an overlap: it begins at the next kick, by its place.
+    """
+    first, slot, count = candidates.first[b], candidates.slot, candidates.face_count[b]
+    for n in range(face_lanes[B.LANES]):
+        l = face_lanes[n]
+        k = selected[l]
+        if batch[B.KIND + l] != TOUCHES or candidates.touching[k]:
+            continue
+        s = slot[k]
+        begin = s
+        while begin > 0 and candidates.face_grain[first + begin - 1] == candidates.i[k]:
+            begin -= 1
+        q = begin
+        while q < count and candidates.face_grain[first + q] == candidates.i[k]:
+            if candidates.touching[candidates.face[first + q]] and _like(s, q, met):
+                batch[B.KIND + l] = NOTHING
+            q += 1
+
+
+@inner(fastmath=FAST, forceinline=True)
+def _like(k: int, g: int, met: Any) -> bool:
+    """Whether the normals in two rows are less than 60 deg apart."""
+    a = F.AWAY
+    along = met[k, a] * met[g, a] + met[k, a + 1] * met[g, a + 1] + met[k, a + 2] * met[g, a + 2]
+    return k != g and along > 0.5
+
+
 @inner(fastmath=FAST, forceinline=True)
 def keep_books(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
     """Keep the books of the faces in a batch that have a share of their force, and write the shares."""
@@ -142,6 +176,7 @@ def take_shares(face_lanes: Any, batch: Any) -> None:
             batch[B.FORCE + 4 * l + k] *= share
             batch[B.TORQUE_I + 4 * l + k] *= share
             batch[B.TORQUE_J + 4 * l + k] *= share
+            batch[B.SIDEWAYS + 4 * l + k] *= share  # with exact timing
 
 
 @inner(fastmath=FAST, forceinline=True)

@@ -9,7 +9,7 @@ class DeviceGrainArrays(NamedTuple):
     """Grains by place: n free ones in cell order, fixed ones, planes. What moves has two halves.
 
     A step reads half `status[CURRENT]` and writes the other: a grain may read its neighbours while they move.
-    Fixed grains and planes stand in both.
+    With exact timing kicks and shear do so each. Fixed grains and planes stand in both.
     """
 
     x: Any  # centres [m], and the radius [m], (2, n_total, 4)

@@ -10,6 +10,7 @@ from ryusa.engine.cuda import step_totals as T
 from ryusa.engine.cuda.arrays import RecordedGrains
 from ryusa.engine.cuda.device import cuda
 from ryusa.engine.cuda.device_state import DeviceState, blocks, shape
+from ryusa.engine.cuda.shear import make_close_kicks, make_close_shear, make_shear
 from ryusa.engine.cuda.step import make_close, make_step
 from ryusa.engine.cuda.step_graph import STEPS, StepGraphs
 from ryusa.engine.cuda.step_totals import NO_GRAIN
@@ -89,6 +90,10 @@ class CudaEngine:
         self._variant, self._choice = variant_of(scene), choice_of(scene)
         self._step_kernel = make_step(self._variant, self._choice, shape())
         self._close_kernel = make_close(shape())
+        if self._variant.exact:
+            self._close_kernel = make_close_kicks(shape())
+            self._shear_kernel = make_shear(self._variant, self._choice, shape())
+            self._close_shear_kernel = make_close_shear(shape())
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._parameters = parameters_of(scene)
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
@@ -128,6 +133,8 @@ class CudaEngine:
         self._d_stats, self._d_terms = cuda.to_device(stats), cuda.to_device(terms)
         self._d_ended = cuda.to_device(np.zeros((self._room, N_EVENT)))
         self._d_partial = cuda.to_device(np.zeros(blocks(n) * T.N_COLUMN))
+        if self._variant.exact and not resumed:  # a pair may have parted since the last kick
+            self._skin = max(self._skin, self._least_skin())
         self._list_pairs()
         if resumed:
             self._device.set_positions(state.x)
@@ -243,7 +250,7 @@ class CudaEngine:
         self._status[F.TARGET] = target
         self._d_status.copy_to_device(self._status)
         while self._step < target:
-            if 2.0 * self._travel > self._skin:
+            if self._list_is_due():
                 fault = self._rebuild_list()
                 if fault is not None:
                     return Flags(fault)
@@ -284,6 +291,20 @@ class CudaEngine:
             n_block, self._room, device.c, self._d_partial, self._d_status, self._d_motion, self._d_terms,
             self._d_stats,
         )  # fmt: skip
+        if self._variant.exact:
+            self._shear_kernel[n_block, cut.threads, stream, 8 * cut.threads * T.N_OF_SHEAR](
+                self._n, device.n_solid, device.c, self._d_status, self._d_motion, device.bodies,
+                device.walls, device.pairs, self._d_partial,
+            )  # fmt: skip
+            self._close_shear_kernel[1, cut.closers, stream, 8 * cut.segments * T.N_OF_SHEAR](
+                n_block, self._room, device.c, self._d_partial, self._d_status, self._d_motion, self._d_stats
+            )
+
+    def _list_is_due(self) -> bool:
+        """Whether pairs have to be listed anew; with exact timing a kernel tells, between kicks and shear."""
+        if self._variant.exact:
+            return int(self._status[F.STOP]) == STOP_LIST
+        return 2.0 * self._travel > self._skin
 
     def _until_list(self) -> int:
         """Steps to launch before the status is read: about as many as the list stays valid."""
@@ -312,12 +333,14 @@ class CudaEngine:
             _NEIGHBOUR_COST * self._device.n_pair,
         )  # fmt: skip
         self._skin = min(max(skin, 0.02 * self._smallest), self._smallest)
-        # a pair that parted in the last step, with exact timing in the one before, has an account to close
-        parted = 2.001 * (1 + self._variant.exact) * float(self._motion[F.FASTEST] * self._parameters[P.DT])
-        self._skin = max(self._skin, parted)
+        self._skin = max(self._skin, self._least_skin())
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         lost = self._list_pairs()
         return self._lost_grain(lost) if lost >= 0 else None
+
+    def _least_skin(self) -> float:
+        """Reach of a list that finds a pair that parted in the last step, with exact timing in two [m]."""
+        return 2.001 * (1 + self._variant.exact) * float(self._motion[F.FASTEST] * self._parameters[P.DT])
 
     def _list_pairs(self) -> int:
         lost = self._device.list_pairs(self._skin, film_reach(self._device.scene))

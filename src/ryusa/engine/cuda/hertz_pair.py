@@ -40,9 +40,9 @@ def make_hertz_contact(variant: KernelVariant, choice: LawChoice) -> Any:
     @device
     def contact(
         a: int, b: int, weight: float, was: int, hdt: float, c: Any, m: Any, inertia: Any, w: Any,
-        normal: Vector, overlap: float, closing: float, curve: float, slip: Vector, twist: float,
-        eta: Any, row: Any, totals: Any,
-    ) -> tuple[int, float, float, bool, float, Vector, Vector]:  # fmt: skip
+        normal: Vector, overlap: float, closing: float, slip: Vector, twist: float, eta: Any, row: Any,
+        totals: Any,
+    ) -> tuple[int, float, float, bool, Vector, Vector]:  # fmt: skip
         """Forces of a pair in contact; parameters and results as those of `pair.make_contact`."""
         dt = c[P.DT]
         n_x, n_y, n_z = normal
@@ -83,6 +83,6 @@ def make_hertz_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2], row[M.F_N] = e_x, e_y, e_z, f_n
         row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2] = b_x, b_y, b_z
         row[M.OVERLAP] = max(overlap, 0.0)
-        return int(touching), f_n, raw, share < 1.0, math.inf, (f_x, f_y, f_z), (t_x, t_y, t_z)
+        return int(touching), f_n, raw, share < 1.0, (f_x, f_y, f_z), (t_x, t_y, t_z)
 
     return contact

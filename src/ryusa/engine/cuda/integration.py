@@ -25,7 +25,7 @@ from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
 from ryusa.model.tally import Term
 
 B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LIFT), int(Term.FLOW)
-B_FILM = int(Term.FILM)
+B_FILM, B_STEP = int(Term.FILM), int(Term.STEP)
 
 Vector = tuple[float, float, float]
 _column_forces, _profile_drag = on_device(column_forces), on_device(profile_drag)
@@ -45,7 +45,7 @@ def _work(before: float, after: float, f: Vector, v: Vector, v_new: Vector) -> t
 def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the motion of one grain for one variant."""
     plane_case, rotation, column, film = variant.plane_case, variant.rotation, variant.column, variant.film
-    drag, torque_law = choice.drag, choice.torque
+    drag, torque_law, exact = choice.drag, choice.torque, variant.exact
 
     @device
     def integrate(
@@ -61,6 +61,8 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
         totals: Any,
     ) -> None:
         """Move the grain at place i by one step, from `half` of its arrays to the other.
+
+        With exact timing it gets its velocities alone: it moves after the shear of its contacts.
 
         Parameters
         ----------
@@ -111,11 +113,20 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
         if not plane_case:
             y_new, u_y = translation_step(y_i, v_y, f_y, d_y, m_weight * c[P.G_Y], inverse_m, dt)
         to_x, to_v = bodies.x[other], bodies.v[other]
-        to_x[i, 0], to_x[i, 1], to_x[i, 2] = x_new, y_new, z_new
+        if exact:
+            to_x[i, 0], to_x[i, 1], to_x[i, 2] = x_i, y_i, z_i
+        else:
+            to_x[i, 0], to_x[i, 1], to_x[i, 2] = x_new, y_new, z_new
         to_v[i, 0], to_v[i, 1], to_v[i, 2] = u_x, u_y, u_z
         square = u_x * u_x + u_y * u_y + u_z * u_z
         bad = not square < math.inf
-        totals[T.SPEED_2] = max(totals[T.SPEED_2], square)
+        if exact:
+            totals[T.KICKED_2] = max(totals[T.KICKED_2], square)
+            done, pending = _work(before, after, force, (v_x, v_y, v_z), (u_x, u_y, u_z))
+            totals[B_STEP] += done
+            totals[T.PENDING_STEP] += pending
+        else:
+            totals[T.SPEED_2] = max(totals[T.SPEED_2], square)
 
         if drag:
             done, pending = _work(before, after, (d_x, d_y, d_z), (v_x, v_y, v_z), (u_x, u_y, u_z))
@@ -162,6 +173,10 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
                 totals[T.PENDING_TORQUE] -= pending
             if last:
                 totals[T.SPIN] += kinetic_energy(inertia, o_x, o_y, o_z, b_x, b_y, b_z)
+        if exact:
+            done, pending = _work(before, after, torque, (o_x, o_y, o_z), (b_x, b_y, b_z))
+            totals[B_STEP] += done
+            totals[T.PENDING_STEP] += pending
         to_w = bodies.w[other]
         to_w[i, 0], to_w[i, 1], to_w[i, 2] = b_x, b_y, b_z
         if bad:

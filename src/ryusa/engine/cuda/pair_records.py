@@ -10,16 +10,19 @@ from ryusa.engine.cuda import run_status as F
 from ryusa.engine.cuda.arrays import RecordedGrains
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import record_fields as R
+from ryusa.engine.shared.contact_instants import APART, is_held
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model.contacts import N_EVENT
 
 Vector = tuple[float, float, float]
-_begin_record, _keep_record, _end_record = (
+_begin_record, _keep_record, _end_record, _is_held = (
     on_device(begin_record),
     on_device(keep_record),
     on_device(end_record),
+    on_device(is_held),
 )
 
 
@@ -31,15 +34,15 @@ def make_record(variant: KernelVariant, choice: LawChoice) -> Any:
 
     @device
     def record_pair(
-        i: int, j: int, n: int, was: int, now: int, until: float, t: float, dt: float, overlap: float,
-        closing: float, f_n: float, raw: float, slides: bool, others: bool, normal: Vector, slip: Vector,
+        i: int, j: int, n: int, was: int, now: int, t: float, dt: float, overlap: float, closing: float,
+        f_n: float, raw: float, slides: bool, others: bool, eta: Any, normal: Vector, slip: Vector,
         force: Vector, grains: RecordedGrains, l_x: float, l_y: float, record: Any, status: Any, ended: Any,
     ) -> None:  # fmt: skip
         """Carry the record of a pair that touches, or did in the last step, through a step.
 
         Parameters
         ----------
-        was, now, until : states of the pair and time to the end of its force, from the contact.
+        was, now, f_n, raw : states and forces of the pair, as from the contact.
         others : whether either grain touches another one.
         ended : records that wait to be fetched; `status` counts them.
         """
@@ -50,14 +53,18 @@ def make_record(variant: KernelVariant, choice: LawChoice) -> Any:
             _begin_record(
                 plane_case, rule, record, t, dt, overlap, closing, slip, normal, i, j, n, grains, l_x, l_y
             )
-        goes_on, pulls, f_last = touching, tension, record[R.T_PART]
-        if exact:  # a record ends after the last force, which may act after the grains parted
-            goes_on, pulls, f_last = now != 0, 0, 1.0 if until == 0.0 else 0.0
-        if goes_on:
-            t_end = record[R.T_END]
+        pulls, f_last, t_end = tension, record[R.T_PART], record[R.T_END]
+        if exact:  # the end of the force is known, but where others pushed the grains apart
+            pulls, f_last = 0, 1.0 if _is_held(was) else 0.0
+            f_n, raw = raw, f_n  # impulses are those of the kicks
+            if not touching:
+                closing -= f_n * dt / eta[M.MASS]  # half of a dashpot may still act
+                if was != 0 and record[R.OVERLAP_MAX] == 0.0:
+                    record[R.PARTNER] = -1.0  # it would have touched, but others moved the grains
+        if touching:
             _keep_record(record, t, dt, overlap, f_n, raw, force, slides, others)
-            if exact and until < math.inf:
-                record[R.T_END] = t + until if until >= 0.0 else t_end
+            if exact and not _is_held(now):
+                record[R.T_END] = t_end
         elif was != 0 and record[R.PARTNER] >= 0.0:
             slot = cuda.atomic.add(status, F.ENDED, 1)  # they are put in order later
             if slot < ended.shape[0]:
@@ -71,3 +78,42 @@ def make_record(variant: KernelVariant, choice: LawChoice) -> Any:
                 cuda.atomic.min(status, F.OVERFLOWED, grains.ids[i])
 
     return record_pair
+
+
+@cache
+def make_record_between(variant: KernelVariant, choice: LawChoice) -> Any:
+    """Build what happens to the record of one pair between two kicks."""
+    plane_case, rule = variant.plane_case, choice.events
+
+    @device
+    def record_between(
+        i: int, j: int, n: int, was: int, when: float, slid: float, t: float, dt: float, overlap: float,
+        closing: float, impulse_n: float, normal: Vector, slip: Vector, impulse: Vector,
+        grains: RecordedGrains, l_x: float, l_y: float, record: Any,
+    ) -> None:  # fmt: skip
+        """Begin the record of a pair that touches, add its impulse, and keep the end of its force.
+
+        Parameters
+        ----------
+        was : state after the kick.
+        when, slid : time of touch or release after t, and whether it slid, from the pair.
+        impulse_n, impulse : over the step, normal and on the grain at place i [N s].
+        """
+        touches = not _is_held(was)
+        if was == APART:
+            for e in range(N_EVENT):
+                record[e] = 0.0
+            _begin_record(
+                plane_case, rule, record, t, dt, overlap, closing, slip, normal, i, j, n, grains, l_x, l_y
+            )
+        if record[R.PARTNER] >= 0.0:
+            record[R.IMPULSE_N] += impulse_n
+            for k in range(3):
+                record[R.IMPULSE + k] += impulse[k]
+            if when < math.inf:
+                if not touches:
+                    record[R.T_END] = t + when
+                if slid > 0.0:
+                    record[R.T_SLIDE] += dt - when if touches else when
+
+    return record_between

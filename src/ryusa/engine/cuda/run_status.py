@@ -7,6 +7,7 @@ CURRENT = 2  # half that holds now
 ENDED = 3  # records that wait to be fetched
 OVERFLOWED = 4  # lowest id of a grain whose record found no room
 TARGET = 5  # steps that will have been done when a call returns
+KICKED = 6  # with exact timing, 1 after the kicks of a step, whose shear is still to come
 N_STATUS = 8
 
 # The same, doubles.

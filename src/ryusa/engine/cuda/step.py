@@ -1,4 +1,7 @@
-"""One step: a kernel in which every grain gathers its forces and moves, and one that adds up what is left."""
+"""One step: a kernel in which every grain gathers its forces and moves, and one that adds up what is left.
+
+With exact timing this is the first half of a step, the kicks; shear.py has the second.
+"""
 
 import math
 from functools import cache
@@ -17,11 +20,13 @@ from ryusa.engine.cuda.arrays import (
 )
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.cuda.integration import make_integrate
-from ryusa.engine.cuda.pair import make_contact, make_spring_energy, track_overlap
+from ryusa.engine.cuda.pair import make_contact, make_spring_energy, separation, track_overlap
 from ryusa.engine.cuda.pair_records import make_record
 from ryusa.engine.cuda.step_totals import NO_GRAIN
 from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.dashpots import kicks_of_pair
 from ryusa.engine.shared.fluid import close_fluid_interval
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.status import (
@@ -36,16 +41,16 @@ from ryusa.engine.shared.status import (
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
-from ryusa.laws.contact_map import passing
 from ryusa.laws.contact_step import contact_kinematics
 from ryusa.laws.families import Rolling
-from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model.tally import N_TERM, Term
 
-B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
+Vector = tuple[float, float, float]
+B_ROLL, B_RELEASED_R, B_STEP = int(Term.ROLL), int(Term.RELEASED_R), int(Term.STEP)
 
+_kicks_of_pair = on_device(kicks_of_pair)
 _rolling_friction, _end_rolling, _close_fluid_interval = (
     on_device(rolling_friction),
     on_device(end_rolling),
@@ -53,14 +58,24 @@ _rolling_friction, _end_rolling, _close_fluid_interval = (
 )
 
 
+@device
+def _rolling_power(row: Any, w_a: Vector, w_b: Vector, sign: float) -> float:
+    """Power that the rolling torque of a row takes from spins [W]."""
+    power = 0.0
+    for k in range(3):
+        power -= (row[M.SPRING_R + k] + row[M.DASH_R + k]) * (w_a[k] + sign * w_b[k])
+    return power
+
+
 @cache
 def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> Any:
     """Build the kernel of one variant, for blocks of one shape."""
     plane_case = variant.plane_case != 0
-    rolling, events, film = variant.rolling, variant.events, variant.film
+    rolling, events, film, exact = variant.rolling, variant.events, variant.film, variant.exact != 0
+    dried = exact and choice.rebound > 0  # springs of the last touch may have been those under water
     model, arms = choice.rolling, choice.arm
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
-    run = threads // parts
+    run, rotation = threads // parts, variant.rotation
     n_total = T.N_COLUMN  # the size of a local array has to be a literal
     both_ways = 1.0 if "both alike" in Rolling(model).marks else -1.0  # Eq. (13) as printed: one direction
     contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
@@ -78,9 +93,9 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         ended: Any,
         partial: Any,
     ) -> None:
-        """Do one step, unless something waits for the host."""
+        """Do one step, or the kicks of one with exact timing, unless something waits for the host."""
         # One function: sums of a grain stay in its 209 to 255 registers (design/0009) from pair to pair
-        if status[F.STOP] != STOP_DONE:
+        if status[F.STOP] != STOP_DONE or (exact and status[F.KICKED] != 0):
             return
         totals = cuda.local.array(n_total, float64)
         for k in range(T.N_COLUMN):
@@ -106,8 +121,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         start, partners, lives, rows = pairs.start, pairs.partners, pairs.touching, pairs.rows
 
         for i in range(cuda.grid(1), n, cuda.gridsize(1)):
-            x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3]
-            id_i = ids[i]
+            r_i, id_i = x[i, 3], ids[i]
             f_x = f_y = f_z = t_x = t_y = t_z = h_x = h_y = h_z = 0.0
             hits = 0
             for k in range(start[i], start[i + 1]):
@@ -115,19 +129,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                 plane = j >= n_solid
                 own = j >= n or ids[j] > id_i  # this side keeps account and records
                 sign = 1.0 if own else -1.0
-                r_j = r_i
-                if plane:  # met as a grain of the same size that touches it from behind
-                    gap = 0.0
-                    for a in range(3):
-                        gap += (x[i, a] - walls.points[j - n_solid, a]) * walls.normals[j - n_solid, a]
-                    away = -(gap + r_i)
-                    d_x = away * walls.normals[j - n_solid, 0]
-                    d_y = away * walls.normals[j - n_solid, 1]
-                    d_z = away * walls.normals[j - n_solid, 2]
-                else:
-                    d_x, d_y, d_z = sign * (x[j, 0] - x_i), sign * (x[j, 1] - y_i), sign * (x[j, 2] - z_i)
-                    r_j = x[j, 3]
-                d_x, d_y = wrap(d_x, l_x), wrap(d_y, l_y)
+                d_x, d_y, d_z, r_j = separation(i, j, sign, n_solid, l_x, l_y, x, walls)
                 square = d_x * d_x + d_z * d_z
                 if not plane_case:
                     square += d_y * d_y
@@ -152,10 +154,11 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                 weight = 1.0 if own else 0.0
                 if was != 0 or overlap > 0.0:
                     row, live = rows[k], overlap > 0.0
-                    curve = passing(u_x * u_x + u_y * u_y + u_z * u_z, closing, w[a, 3] + w[b, 3] - overlap)
-                    now, f_n, raw, slides, until, (p_x, p_y, p_z), turned = contact(
-                        a, b, weight, was, hdt, c, m, inertia, w, normal, overlap, closing, curve, slip,
-                        twist, pairs.eta[k], row, totals,
+                    if dried and was == 0:  # found in touch at a step, as where grains were put in touch
+                        _kicks_of_pair(k, a, b, rotation, c, m, x, inertia, pairs.eta)
+                    now, f_n, raw, slides, (p_x, p_y, p_z), turned = contact(
+                        a, b, weight, was, hdt, c, m, inertia, w, normal, overlap, closing, slip, twist,
+                        pairs.eta[k], row, totals,
                     )  # fmt: skip
                     lives[k] = now
                     f_x, f_y, f_z = f_x + sign * p_x, f_y + sign * p_y, f_z + sign * p_z
@@ -179,6 +182,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                                 share_j = float(max(n_touching[j], 1))
                             side_i = (r_i, m[i], inertia[i], share_i)
                             side_j = (r_wall, m[j], inertia[j], share_j)
+                            if exact:
+                                totals[B_STEP] += weight * hdt * _rolling_power(row, w_a, w_b, both_ways)
                             q_x, q_y, q_z, held = _rolling_friction(
                                 model, arms, row, c, f_n, overlap, hdt,
                                 side_i if own else side_j, side_j if own else side_i,
@@ -188,19 +193,23 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                                     normal[0] * p_y - normal[1] * p_x,
                                 ), w_a, w_b, work,
                             )  # fmt: skip
+                            if exact:
+                                totals[B_STEP] += weight * hdt * _rolling_power(row, w_a, w_b, both_ways)
                             turn_i = 1.0 if own else both_ways
                             t_x, t_y, t_z = t_x + turn_i * q_x, t_y + turn_i * q_y, t_z + turn_i * q_z
                             if last:
                                 totals[T.SPRING_R] += weight * held
                         elif was != 0:
+                            if exact:
+                                totals[B_STEP] += weight * hdt * _rolling_power(row, w_a, w_b, both_ways)
                             _end_rolling(model, row, c, hdt, w_a, w_b, reduced_radius(r_i, r_wall), work)
                         totals[B_ROLL] += weight * work[B_ROLL]
                         totals[B_RELEASED_R] += weight * work[B_RELEASED_R]
                     if events and own:
                         others = n_touching[i] > 1 or (j < n and n_touching[j] > 1)
                         record_pair(
-                            i, j, n, was, now, until, t, dt, overlap, closing, f_n, raw, slides, others,
-                            normal, slip, (p_x, p_y, p_z),
+                            i, j, n, was, now, t, dt, overlap, closing, f_n, raw, slides, others,
+                            pairs.eta[k], normal, slip, (p_x, p_y, p_z),
                             RecordedGrains(x, v, w, ids, bodies.image, bodies.tracked), l_x, l_y,
                             row[record_at:], status, ended,
                         )  # fmt: skip
@@ -245,6 +254,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                     at_k = k - lead * threads
                     totals[T.SPEED_2] = max(totals[T.SPEED_2], shared_sums[T.SPEED_2 * threads + at_k])
                     totals[T.SPIN_2] = max(totals[T.SPIN_2], shared_sums[T.SPIN_2 * threads + at_k])
+                    if exact:
+                        totals[T.KICKED_2] = max(totals[T.KICKED_2], shared_sums[T.KICKED_2 * threads + at_k])
                     totals[T.NOT_FINITE] = min(
                         totals[T.NOT_FINITE], shared_sums[T.NOT_FINITE * threads + at_k]
                     )
@@ -285,20 +296,23 @@ def make_close(shape: LaunchShape) -> Any:
             return
         for task in range(me, T.N_COLUMN * segments, closers):
             part = task // T.N_COLUMN
-            _reduce(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
+            reduce_columns(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
         cuda.syncthreads()
         for column in range(me, T.N_COLUMN, closers):
-            _reduce(column, 0, 0, segments, 1, shared_sums, shared_sums)
+            reduce_columns(column, 0, 0, segments, 1, shared_sums, shared_sums)
         cuda.syncthreads()
         if me == 0:
-            _enter_totals(shared_sums, status, terms[0], stats[0])
-            _decide_stop(room, c, shared_sums, status, motion, stats[0])
+            enter_totals(shared_sums, status, terms[0], stats[0])
+            find_fault(room, c, shared_sums, status, stats[0])
+            _decide_stop(room, c, status, motion, stats[0])
 
     return close
 
 
 @device
-def _reduce(column: int, to: int, begin: int, end: int, every: int, rows: Any, shared_sums: Any) -> None:
+def reduce_columns(
+    column: int, to: int, begin: int, end: int, every: int, rows: Any, shared_sums: Any
+) -> None:
     """Add up one column over some rows, or find its extreme; the pair of the largest overlap goes along."""
     if column == T.OVERLAP:
         best, grain, partner = -1.0, float(NO_GRAIN), float(NO_GRAIN)
@@ -327,9 +341,10 @@ def _reduce(column: int, to: int, begin: int, end: int, every: int, rows: Any, s
 
 
 @device
-def _enter_totals(sums: Any, status: Any, terms: Any, stats: Any) -> None:
+def enter_totals(sums: Any, status: Any, terms: Any, stats: Any) -> None:
     """Enter what a step did: the half interval of water that waited, then its own works; and extremes."""
     _close_fluid_interval(terms, stats)
+    stats[S.PENDING_STEP] = sums[T.PENDING_STEP]
     for k in range(N_TERM):
         terms[k] += sums[k]
     stats[S.PENDING_DRAG], stats[S.PENDING_TORQUE] = sums[T.PENDING_DRAG], sums[T.PENDING_TORQUE]
@@ -347,24 +362,25 @@ def _enter_totals(sums: Any, status: Any, terms: Any, stats: Any) -> None:
 
 
 @device
-def _decide_stop(room: int, c: Any, sums: Any, status: Any, motion: Any, stats: Any) -> None:
-    """Find the first fault, count the step, and stop for the host where it has something to do."""
+def find_fault(room: int, c: Any, sums: Any, status: Any, stats: Any) -> None:
+    """Find the first fault of a step."""
     if stats[S.OVERLAP_STEP] == status[F.STEP] and stats[S.OVERLAP_MAX] > c[P.OVERLAP_LIMIT]:
         stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
             FAULT_OVERLAP, sums[T.OVERLAP_GRAIN], sums[T.OVERLAP_PARTNER],
         )  # fmt: skip
     elif sums[T.NOT_FINITE] < NO_GRAIN:
         stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
-            FAULT_NOT_A_NUMBER,
-            sums[T.NOT_FINITE],
-            -1.0,
-        )
+            FAULT_NOT_A_NUMBER, sums[T.NOT_FINITE], -1.0,
+        )  # fmt: skip
     elif status[F.ENDED] > room:
         stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
-            FAULT_EVENTS_FULL,
-            status[F.OVERFLOWED],
-            -1.0,
-        )
+            FAULT_EVENTS_FULL, status[F.OVERFLOWED], -1.0,
+        )  # fmt: skip
+
+
+@device
+def _decide_stop(room: int, c: Any, status: Any, motion: Any, stats: Any) -> None:
+    """Count the step, and stop for the host where it has something to do."""
     fastest = stats[S.SPEED_MAX]
     travel = motion[F.TRAVEL] + fastest * c[P.DT]
     motion[F.TRAVEL], motion[F.FASTEST] = travel, fastest

@@ -11,7 +11,8 @@ from typing import Any
 from ryusa.engine.cuda.arrays import DeviceGrainArrays, DevicePairArrays, DeviceWallArrays
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.dashpots import set_springs
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.dashpots import normal_kicks, set_springs
 from ryusa.laws.geometry import wrap
 
 CHUNK = 64  # numbers that one thread adds up in a row
@@ -25,7 +26,7 @@ G_WIDTH = 11
 G_REACH = 14
 N_GRID = 15
 
-_set_springs = on_device(set_springs)
+_set_springs, _normal_kicks = on_device(set_springs), on_device(normal_kicks)
 
 
 @device
@@ -267,20 +268,18 @@ def set_springs_in_touch(
 ) -> None:
     """Give pairs in contact, by ids, the springs that a card computes: a resumed run has the same bits so.
 
-    `immersed`: their normal springs were set when they touched, and stay.
+    `immersed`: their normal dashpots were set when they touched, and stay.
     """
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         for k in range(pairs.start[i], pairs.start[i + 1]):
-            j, eta_n, k_n = pairs.partners[k], pairs.eta[k, M.ETA_N], 0.0
-            if kind == M.OF_MAPS:
-                k_n = pairs.eta[k, M.K_N]
+            j, eta_n = pairs.partners[k], pairs.eta[k, M.ETA_N]
             _set_springs(
                 k, min(i, j), max(i, j), rotation, kind, c, bodies.m, bodies.x[0], bodies.inertia, pairs.eta
             )
             if immersed:
                 pairs.eta[k, M.ETA_N] = eta_n
                 if kind == M.OF_MAPS:
-                    pairs.eta[k, M.K_N] = k_n
+                    _normal_kicks(k, c[P.K_N], pairs.eta[k, M.MASS], c[P.DT], pairs.eta)
 
 
 @cuda.jit

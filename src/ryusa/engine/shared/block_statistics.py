@@ -32,7 +32,13 @@ VELOCITY_CHANGE_MAX = 25  # largest difference of a velocity to that at the last
 SPEED_MOVED = 26  # largest speed and difference as the block last moved: its own thread's, until posted
 VELOCITY_CHANGE_MOVED = 27
 PENDING_WALL = 28
-N_STATISTIC = 32  # a whole number of cache lines: blocks of different threads share none
+# of contacts with exact timing, what belongs to the interval after the step: energy from the step itself, and
+# what is dissipated
+PENDING_STEP = 29
+PENDING_DASH_N = 30
+PENDING_DASH_S = 31
+PENDING_SLIDE = 32
+N_STATISTIC = 40  # a whole number of cache lines: blocks of different threads share none
 PENDING = (
     PENDING_DRAG,
     PENDING_TORQUE,
@@ -40,4 +46,8 @@ PENDING = (
     PENDING_FLOW,
     PENDING_FILM,
     PENDING_WALL,
+    PENDING_STEP,
+    PENDING_DASH_N,
+    PENDING_DASH_S,
+    PENDING_SLIDE,
 )  # booked with the next step

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ryusa.engine.shared.contact_instants import BACK, BEGAN
 from ryusa.laws.families import ContactForce
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
@@ -55,13 +56,19 @@ def forces_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Contac
         ways = ways_to_faces(scene.walls, number, x[i[face]], state.t - scene.dt, scene.period)
         normal[face] = ways / np.linalg.norm(ways, axis=1)[:, None]
     normal[plane] = -scene.plane_normal[j[plane] - len(every)]
-    shear = held.spring_s[places] + held.dash_s[places]
+    shear = (held.spring_s[places] + held.dash_s[places]) * _in_force(state, places)[:, None]
     if scene.plane_case:  # one component, along (n_z, 0, -n_x)
         along = shear[:, 0]
         shear = np.stack([along * normal[:, 2], np.zeros(len(i)), -along * normal[:, 0]], axis=1)
     f_n = held.f_n[places] - pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[0]
     share = shares_of_contacts(scene, x, state.t - scene.dt, i, j)
     return ContactForces(normal, share[:, None] * (shear - f_n[:, None] * normal))
+
+
+def _in_force(state: State, places: np.ndarray) -> Floats:
+    """1 for contacts that had a force in the last step, 0 for those whose spring is that of the next one."""
+    states = state.contacts.state[places]
+    return np.where((states == BEGAN) | (states == BACK), 0.0, 1.0)
 
 
 def overlaps_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Floats:
@@ -93,6 +100,7 @@ def energies_of_springs(scene: Scene, state: State, places: np.ndarray) -> Sprin
     normal -= float(pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[1].sum())
     tangential = 0.0
     if scene.contact.k_s > 0.0:
+        share = share * _in_force(state, places)
         tangential = float(np.sum(0.5 * share[:, None] * held.spring_s[places] ** 2 / k_s[:, None]))
     return SpringEnergies(normal, tangential, rolling_energy(scene, state, places))
 

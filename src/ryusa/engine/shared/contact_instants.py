@@ -1,221 +1,301 @@
 """A contact in the steps in which it begins or ends: exact touch and release (design/0014).
 
-The states of a pair tell what its next step has to do. Between the first and the last step of a contact the
-force is that of the map (laws/contact_map.py). Nothing here branches but `instant_step`: an engine that works
-on many pairs at once calls its parts in loops that become vector instructions.
+At a step a pair in touch is kicked; between two steps it goes on by a shear. Where it touches or is released
+within a step, its velocity and its place are corrected there to those of its exact flow. Nothing here
+branches but `middle_of_pair`: an engine that works on many pairs at once calls its parts in loops that become
+vector instructions.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.laws.contact import shear_strength, slide
+from ryusa.laws.contact import shear_strength
 from ryusa.laws.contact_map import (
-    begin_in_step,
-    decay_of_map,
-    end_in_step,
+    decay_of_kick,
+    kick_and_shear,
+    part_in_step,
     time_of_release,
-    velocity_of_map,
+    touch_in_step,
 )
 from ryusa.laws.slip_within_step import slip_within_step
 
 Vector = tuple[float, float, float]
 Rules = tuple[bool, bool, bool]
-Springs = tuple[float, float, float, float]  # stiffnesses [N/m], cohesion [N], friction [-] of a pair
+Law = tuple[float, float, float, float]  # stiffnesses [N/m], cohesion [N], friction [-] of a pair
 
-# States of a pair
+# States of a pair after a step
 APART = 0
-HELD = 1  # on the map
-BEGAN = 2  # touched within the last step: the closing speed is still to be corrected
-ENDING = 3  # the force ended within the last step: the closing speed is still to be corrected
-ENDED = 4  # without force, until the overlap ends or the force comes back
-PARTED = 5  # without overlap, in the one step after its end in which the closing speed was corrected
+HELD = 1  # in touch: kicked, and half of its dashpot of the next kick is done
+SLID = 2  # as HELD, and its last kick was cut down to the strength
+BACK = 3  # its force came back since the last kick: its spring is that of the next one
+BEGAN = 4  # touched since the last kick: likewise
+FREED = 5  # without force, until the overlap ends or the force comes back
+GONE = 6  # the force and the overlap ended since the last kick
 
-# What a step does with a pair
-FREE = 0.0  # no force
-ON_MAP = 1.0  # the force of the map
-BEGINS = 2.0
-MAY_END = 3.0  # `end_contact` tells
-CORRECTS = 4.0  # the closing speed after the end
+# What happens to a pair between two kicks
+NOTHING = 0.0
+TOUCHES = 1.0
+MAY_PART = 2.0  # `part` tells
 
 _ROUND_OFF = 1e-9  # steps by which a release may lie beyond the next step and still be looked upon as at it
-_LATE = 2.0  # steps of approach within which a first overlap is that of a touch; a larger one was put there
+_BEYOND = 1.25  # times the strength: a spring that the next kick cuts down to it
+SLIDES = 1.0 - 1e-9  # of the strength, from which on a contact slides
+
+
+class Middle(NamedTuple):
+    """What a pair does between two kicks."""
+
+    state: float
+    change: float  # of the closing speed by the pair [m/s]
+    shift: float  # of the overlap by the pair, beside the flight of its grains [m]
+    push: Vector  # tangential impulse on i [N s]
+    spring: Vector  # tangential spring force on i from now on [N]
+    spent_n: float  # dissipated in the normal and the tangential direction [J]
+    spent_s: float
+    slid: float  # 1 if it slid
+    when: float  # time of touch or release after the step [s]; inf if there is none
 
 
 @inner(fastmath=FAST, forceinline=True)
-def may_end(closing: float, raw: float, k_d: float, c: Any) -> bool:
-    """Whether the force `raw` of a map [N] may end within the coming step, whatever the masses."""
-    falls = c[P.FADING] * raw <= -k_d * closing * c[P.DT]
-    return (closing < 0.0) & (falls | (raw <= 0.0))  # no branch, for a loop over pairs
+def pushes(state: float, overlap: float) -> bool:
+    """Whether a pair is kicked at a step: by its place, not by what was foreseen (design/0014)."""
+    return (overlap > 0.0) & (state != FREED)
 
 
 @inner(fastmath=FAST, forceinline=True)
-def kind_of_step(
-    state: float, overlap: float, closing: float, raw: float, fades: bool, tension: bool, dt: float
-) -> float:
-    """What a step does with a pair; `raw` is the force of the map [N], `fades` whether it `may_end`."""
-    apart, ended = state == APART, state >= ENDED
-    free = overlap <= 0.0 or ((apart or ended) and raw <= 0.0 and not tension)
-    begins = apart and overlap <= _LATE * closing * dt
-    ends = state == BEGAN or (state == HELD and fades)
-    kind = BEGINS if begins else MAY_END if ends else ON_MAP
-    kind = FREE if free else kind
-    return CORRECTS if state == ENDING else kind
+def is_held(state: float) -> bool:
+    """Whether a pair was kicked at the last step and not released since."""
+    return (state > APART) & (state < BACK)
 
 
 @inner(fastmath=FAST, forceinline=True)
-def oscillators(
-    m: float, eta_d: float, m_t: float, eta_sd: float, k_n: float, c: Any
-) -> tuple[float, float, float, float]:
-    """Oscillators of the normal and the tangential map of a pair.
+def bounding(f_n: float, e_n: float) -> float:
+    """Normal force that bounds the tangential one [N]; of a pair that parts, that of the kick.
 
-    Returns decay rate [1/s] and squared frequency [1/s2] of the first, decay rate and dashpot [N s/m] of
-    the second.
+    `f_n` is the whole normal force, and `e_n` that of the spring; the kick has half of the dashpot.
     """
-    a, a_t = decay_of_map(eta_d, m, c[P.DT]), decay_of_map(eta_sd, m_t, c[P.DT])
-    return a, k_n / m - a * a, a_t, 2.0 * a_t * m_t
+    return max(f_n, 0.5 * (f_n + e_n))
 
 
 @inner(fastmath=FAST, forceinline=True)
-def begin_contact(
-    overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
-    eta_sd: float, s: Vector, rules: Rules, law: Springs, c: Any,
-) -> tuple[float, float, Vector, Vector, bool]:  # fmt: skip
-    """Normal force and that of its spring [N], tangential force as in `instant_step`, and whether it slid."""
+def after_kick(
+    state: float, closing: float, f_n: float, eta_d: float, eta_sd: float, rules: Rules, dt: float
+) -> tuple[float, float]:
+    """Tangential impulse of a pair in touch after its kick, over slip velocity [kg] and over its force [s].
+
+    Half of the dashpot, or where the strength holds for all of the force, what the strength is of the normal
+    impulse after the kick; `f_n` is of `bounding` [N].
+    """
+    total, drop, cap_total = rules
+    slid = state == SLID
+    rubs = slid & total & cap_total & (f_n > 0.0)
+    return 0.0 if slid and (total or drop) else -eta_sd * dt, eta_d * closing * dt / f_n if rubs else 0.0
+
+
+@inner(fastmath=FAST, forceinline=True)
+def dashes(state: float) -> bool:
+    """Whether the second half of a dashpot is due at a step."""
+    return (state > APART) & (state < FREED)
+
+
+@inner(fastmath=FAST, forceinline=True)
+def kind_between(
+    state: float, overlap: float, closing: float, k_n: float, eta: float, way: float, left: float,
+    before: float, tension: bool, dt: float,
+) -> float:  # fmt: skip
+    """What happens to a pair until the next step; `eta` is no less than its dashpot [N s/m]."""
+    y = overlap + way * closing
+    falls = k_n * y + eta * (left * left * closing - before * y) <= 0.0
+    ends = (y < 0.0) if tension else ((closing < 0.0) & falls)
+    back = k_n * overlap + eta * closing > 0.0
+    meets = (closing > 0.0) & (overlap + closing * dt > 0.0)
+    begins = (back & (overlap > 0.0)) if state == FREED else meets
+    held = is_held(state)
+    return MAY_PART if held and ends else TOUCHES if (not held) and begins else NOTHING
+
+
+@inner(fastmath=FAST, forceinline=True)
+def spent_in_touch(
+    overlap: float, closing: float, way: float, after: float, before: float, left: float, m: float, k_n: float
+) -> float:
+    """Energy that the dashpot of a pair takes over a step in touch [J]."""
+    y, v = overlap + way * closing, closing + after * overlap
+    rate = left * left * closing - before * y
+    return 0.5 * (m * (v * v - rate * rate) + k_n * (overlap * overlap - y * y))
+
+
+@inner(fastmath=FAST, forceinline=True)
+def _tangential_kicks(
+    m_t: float, k_s: float, eta_sd: float, dt: float
+) -> tuple[float, float, float, float, float]:
+    """Dashpot [N s/m], spring of a kick over that of the law, rates after and before a kick, what is left."""
+    a = decay_of_kick(eta_sd, m_t, dt)
+    _, after, before, left = kick_and_shear(dt, a, k_s / m_t - a * a)
+    stiffer = m_t * (after + before) / (dt * k_s) if k_s > 0.0 else 0.0
+    return 2.0 * a * m_t, stiffer, after, before, left
+
+
+@inner(fastmath=FAST, forceinline=True)
+def touch(
+    overlap: float, closing: float, m: float, eta_d: float, way: float, after: float, before: float,
+    left: float, m_t: float, k_sd: float, eta_sd: float, s: Vector, rules: Rules, law: Law, c: Any,
+) -> Middle:  # fmt: skip
+    """What a pair does that touches until the next step, or whose force comes back."""
     dt, (k_n, k_s, cohesion, mu) = c[P.DT], law
     total, drop, cap_total = rules
-    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, k_n, c)
-    since, v_touch, y, rate, brake = begin_in_step(overlap, closing, curve, dt, a, q)
+    a = decay_of_kick(eta_d, m, dt)
+    q = k_n / m - a * a
+    since, y, rate = touch_in_step(overlap, closing, dt, a, q)
+    since = max(since, 0.0)
+    held = max(overlap, 0.0)
+    eta_s, stiffer, _, before_s, left_s = _tangential_kicks(m_t, k_s, eta_sd, dt)
     p_x, p_y, p_z, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
-        since, 0.0, v_touch, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
+        since, held, closing, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
         drop, cap_total,
     )  # fmt: skip
-    _, _, _, _, _, _, way_x, way_y, way_z, slid_too = slip_within_step(
-        dt, y, rate, a, q, m, p_x, p_y, p_z, s_x, s_y, s_z, k_s, eta_s, m_t, cohesion, mu, total, drop,
-        cap_total,
-    )  # fmt: skip
-    softer = k_sd / k_s if k_s > 0.0 else 0.0
-    e = (p_x * softer, p_y * softer, p_z * softer)
-    b = (
-        m_t * (way_x / dt - s[0]) / dt - e[0],
-        m_t * (way_y / dt - s[1]) / dt - e[1],
-        m_t * (way_z / dt - s[2]) / dt - e[2],
+    ahead = (rate + before * y) / left  # the kick at the next step takes the rest
+    # of friction it takes what it takes of the force that limits it, if it slides; else what the spring takes
+    e_n = k_n * y
+    f_n = e_n + 2.0 * a * m * rate
+    soft, dash = 1.0 / k_s if k_s > 0.0 else 0.0, eta_s if total else 0.0
+    w_x, w_y, w_z = p_x - dash * s_x, p_y - dash * s_y, p_z - dash * s_z
+    strength, size = (
+        shear_strength(f_n if cap_total else e_n, cohesion, mu),
+        math.sqrt(w_x * w_x + w_y * w_y + w_z * w_z),
     )
-    return m * brake / dt, k_d * y, e, b, slid + slid_too > 0.0
-
-
-@inner(fastmath=FAST, forceinline=True)
-def _slip_to_the_end(
-    until: float, overlap: float, v: float, a: float, q: float, m: float, push: float, e_n: float,
-    m_t: float, k_sd: float, eta_sd: float, eta_s: float, p: Vector, f_t: Vector, s: Vector, rules: Rules,
-    law: Springs, c: Any,
-) -> tuple[Vector, bool]:  # fmt: skip
-    """Tangential force on i [N] in the step in which the normal force ends, and whether the contact slid."""
-    dt, (_, k_s, cohesion, mu) = c[P.DT], law
-    total, drop, cap_total = rules
-    stiffer = k_s / k_sd if k_sd > 0.0 else 0.0
-    e_x, e_y, e_z = p[0] - k_sd * s[0] * dt, p[1] - k_sd * s[1] * dt, p[2] - k_sd * s[2] * dt
-    b_x, b_y, b_z = -eta_sd * s[0], -eta_sd * s[1], -eta_sd * s[2]
-    w_x, w_y, w_z = e_x, e_y, e_z
-    if total:
-        w_x, w_y, w_z = w_x + b_x, w_y + b_y, w_z + b_z
-    tau_c = shear_strength(push if cap_total else e_n, cohesion, mu)
-    share, swap, keep = slide(math.sqrt(w_x * w_x + w_y * w_y + w_z * w_z), tau_c, drop, total)
-    e_x, e_y, e_z = share * e_x + swap * b_x, share * e_y + swap * b_y, share * e_z + swap * b_z
-    lag = dt / (6.0 * m_t)  # from the mean of the last step to now, with a force that changes linearly
-    _, _, _, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
-        until, overlap, v, a, q, m, stiffer * e_x, stiffer * e_y, stiffer * e_z,
-        s[0] + lag * (2.0 * (e_x + keep * b_x) + f_t[0]), s[1] + lag * (2.0 * (e_y + keep * b_y) + f_t[1]),
-        s[2] + lag * (2.0 * (e_z + keep * b_z) + f_t[2]), k_s, eta_s, m_t, cohesion, mu, total, drop,
-        cap_total,
+    slides = size >= SLIDES * strength
+    of_limit = (
+        m * (ahead - rate) / f_n if total else m * before / k_n
+    )  # of the limit, by the normal force or its spring
+    of_limit *= strength / (m_t * size) if slides and size > 0.0 else 0.0
+    of_spring, whole = 0.0 if slides else before_s * soft, slides and total
+    over = 1.0 if slides and (total or drop) else 1.0 / left_s
+    v_x = over * (s_x - of_limit * w_x - of_spring * p_x)
+    v_y = over * (s_y - of_limit * w_y - of_spring * p_y)
+    v_z = over * (s_z - of_limit * w_z - of_spring * p_z)
+    push = (m_t * (v_x - s[0]), m_t * (v_y - s[1]), m_t * (v_z - s[2]))
+    held_on, on_w, back = (
+        _BEYOND - 1.0 if slides else 0.0,
+        1.0 if slides else 0.0,
+        2.0 * eta_sd if whole else 0.0,
+    )
+    on_p = 0.0 if slides else stiffer
+    e_x, e_y, e_z = (
+        on_w * w_x + on_p * p_x + back * v_x,
+        on_w * w_y + on_p * p_y + back * v_y,
+        on_w * w_z + on_p * p_z + back * v_z,
+    )
+    spring = e_x + held_on * w_x, e_y + held_on * w_y, e_z + held_on * w_z
+    soft_d = 0.5 / k_sd if k_sd > 0.0 else 0.0
+    spent_n = 0.5 * (m * (closing * closing - rate * rate) + k_n * (held * held - y * y))
+    moved = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] - (s_x * s_x + s_y * s_y + s_z * s_z)
+    spent_s = 0.5 * m_t * moved - soft_d * (e_x * e_x + e_y * e_y + e_z * e_z)
+    state, shift = float(BACK if overlap > 0.0 else BEGAN), y - overlap - dt * ahead
+    return Middle(
+        state, ahead - closing, shift, push, spring, spent_n, spent_s, slid, dt - since
     )  # fmt: skip
-    force = (m_t * (s_x - s[0]) / dt, m_t * (s_y - s[1]) / dt, m_t * (s_z - s[2]) / dt)
-    return force, slid > 0.0 or share < 1.0
 
 
 @inner(fastmath=FAST, forceinline=True)
-def end_contact(
-    rest: float, overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
-    eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules, law: Springs,
-    c: Any,
-) -> tuple[bool, float, float, float, Vector, bool, float]:  # fmt: skip
-    """Forces of a contact on its map that may end within the coming step.
+def part(
+    state: float, overlap: float, closing: float, f_n: float, m: float, eta_d: float, way: float,
+    after: float, before: float, left: float, m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector,
+    s: Vector, tension: bool, rules: Rules, law: Law, c: Any,
+) -> Middle:  # fmt: skip
+    """What a pair in touch does until the next step if it may be released.
 
-    Parameters as in `instant_step`, the rest zero but in the second step of a contact. Returns whether it
-    ends, and then `rest`, `f_n`, `push`, `b`, `slid` and `until` as in `instant_step`.
+    `f_n` bounds its tangential force, `p` is its tangential spring force, `f_t` all of that force, on i [N].
     """
-    dt, e_n = c[P.DT], k_d * overlap
-    closing += rest
-    raw = e_n + eta_d * closing
-    onward = closing - dt * raw / m
-    fades = closing < 0.0 and k_d * (overlap + dt * onward) + eta_d * onward <= P.LEAST_NEXT * raw
-    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, law[0], c)
-    v = velocity_of_map(overlap, closing, dt, a, q)
+    dt, (k_n, k_s, cohesion, mu) = c[P.DT], law
+    total, drop, cap_total = rules
+    a = decay_of_kick(eta_d, m, dt)
+    q = k_n / m - a * a
+    v = closing + after * overlap
     until = time_of_release(overlap, v, a, q, tension)
-    ends = fades and until <= (1.0 + _ROUND_OFF) * dt
-    until = until if ends else 0.0
-    v_mean, v_end = end_in_step(overlap, v, until, dt, a, q)
-    b, slid = _slip_to_the_end(
-        until, overlap, v, a, q, m, raw, e_n, m_t, k_sd, eta_sd, eta_s, p, f_t, s, rules, law, c
-    )
-    f_n = (m * (closing - v_mean) / dt if ends else raw) - m * rest / dt
-    return ends, v_end - v_mean, f_n, raw, b, slid, until if ends else math.inf
+    ends = until <= (1.0 + _ROUND_OFF) * dt
+    until = min(until, dt) if ends else 0.0
+    y, rate = part_in_step(overlap, v, until, dt, a, q)
+    eta_s, stiffer, after_s, _, _ = _tangential_kicks(m_t, k_s, eta_sd, dt)
+    softer = 1.0 / stiffer if stiffer > 0.0 else 0.0
+    p_x, p_y, p_z = softer * p[0], softer * p[1], softer * p[2]
+    slides = state == SLID
+    soft = 1.0 / k_s if k_s > 0.0 else 0.0
+    of_all = m * after * overlap / (m_t * f_n) if f_n > 0.0 else 0.0
+    of_spring = stiffer * dt * after / (m_t * (after + before)) if slides else after_s * soft
+    of_all, of_spring = of_all if slides and total else 0.0, 0.0 if slides and total else of_spring
+    b_x = s[0] - of_all * f_t[0] - of_spring * p_x
+    b_y = s[1] - of_all * f_t[1] - of_spring * p_y
+    b_z = s[2] - of_all * f_t[2] - of_spring * p_z
+    _, _, _, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
+        until, overlap, v, a, q, m, p_x, p_y, p_z, b_x, b_y, b_z, k_s, eta_s, m_t, cohesion, mu, total, drop,
+        cap_total,
+    )  # fmt: skip
+    spent_n = 0.5 * (m * (v * v - rate * rate) + k_n * overlap * overlap)
+    moved = b_x * b_x + b_y * b_y + b_z * b_z - (s_x * s_x + s_y * s_y + s_z * s_z)
+    soft_d = 0.5 / k_sd if k_sd > 0.0 else 0.0
+    spent_s = 0.5 * m_t * moved + soft_d * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
+    go, stay = 1.0 if ends else 0.0, 0.0 if ends else 1.0
+    dash, rub = after_kick(state, closing, f_n, eta_d, eta_sd, rules, dt)
+    dash, rub = stay * dash, stay * rub
+    freed = FREED if y > 0.0 else GONE
+    return Middle(
+        freed if ends else state,
+        go * (rate - closing) - stay * (1.0 - left) * closing,
+        go * (y - overlap - dt * rate) + stay * (way - dt * left) * closing,
+        (
+            go * m_t * (s_x - s[0]) + dash * s[0] + rub * f_t[0],
+            go * m_t * (s_y - s[1]) + dash * s[1] + rub * f_t[1],
+            go * m_t * (s_z - s[2]) + dash * s[2] + rub * f_t[2],
+        ),
+        (stay * p[0], stay * p[1], stay * p[2]),
+        go * spent_n + stay * spent_in_touch(overlap, closing, way, after, before, left, m, k_n),
+        go * spent_s, go * max(slid, 1.0 if slides else 0.0), until if ends else math.inf,
+    )  # fmt: skip
 
 
 @inner(fastmath=FAST)
-def instant_step(
-    state: int, rest: float, overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float,
-    m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules,
-    law: Springs, c: Any,
-) -> tuple[int, float, float, float, float, bool, Vector, Vector, bool, float]:  # fmt: skip
-    """Forces of a pair in a step that begins or ends its contact, or may end it.
+def middle_of_pair(
+    state: float, overlap: float, closing: float, f_n: float, m: float, eta_d: float, k_nd: float, way: float,
+    after: float, m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool,
+    rules: Rules, law: Law, c: Any,
+) -> Middle:  # fmt: skip
+    """What a pair does between two kicks.
 
     Parameters
     ----------
-    state : of the pair after the last step.
-    rest : correction of the closing speed that the last step left [m/s].
-    overlap, closing : as `contact_kinematics` gives them [m], [m/s].
-    curve : as `contact_map.passing` gives it [m/s2].
+    state : of the pair after the kick.
+    overlap, closing : as `contact_kinematics` gives them [m], [m/s], after the kick.
+    f_n : of `bounding` at the kick [N].
     m, m_t : effective masses in the normal and the tangential direction [kg].
-    k_d, eta_d, k_sd, eta_sd : stiffness [N/m] and dashpots [N s/m] of the map.
-    p, f_t : tangential spring force, and whole tangential force, on i in the last step [N].
-    s : slip velocity of i relative to j [m/s].
+    eta_d, k_nd, way, after : dashpot and spring of its kicks, and its shear, as `memory_rows` has them.
+    k_sd, eta_sd : tangential spring [N/m] and dashpot [N s/m] of its kicks, likewise.
+    p, f_t : tangential spring force, and whole tangential force, on i at the kick [N].
+    s : slip velocity of i relative to j [m/s], after the kick.
     tension : the force ends with the overlap; else where it would pull.
     rules : of sliding, `total`, `drop` and `cap_total` of `tangential_step`.
     law : of the pair.
     c : parameters.
-
-    Returns
-    -------
-    state, rest : after this step; the rest only of one whose force ends.
-    f_n, e_n : normal force and that of its spring [N].
-    push : normal force without corrections, which limits friction if the whole force does [N].
-    given : whether the tangential force is given here; else it is that of `tangential_step`.
-    e, b : tangential spring force, and the rest of the tangential force, on i [N].
-    slid : whether the contact slid.
-    until : time from this step to the end of the force [s]; inf if it goes on, -inf if it ended before.
     """
-    e_n, none = k_d * overlap, (0.0, 0.0, 0.0)
-    raw = e_n + eta_d * closing
-    kind = kind_of_step(state, overlap, closing, raw, True, tension, c[P.DT])
-    if kind == CORRECTS:
-        now = ENDED if overlap > 0.0 else PARTED
-        return now, 0.0, -m * rest / c[P.DT], 0.0, 0.0, True, none, none, False, -math.inf
-    if kind == FREE:
-        now, until = ENDED if overlap > 0.0 else APART, -math.inf if state >= ENDED else 0.0
-        return now, 0.0, 0.0, 0.0, 0.0, True, none, none, False, until
-    if kind == BEGINS:
-        f_n, e_n, e, b, slid = begin_contact(
-            overlap, closing, curve, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, law, c
+    dt, k_n = c[P.DT], law[0]
+    left, before = 1.0 - eta_d * dt / m, k_nd * dt / m - after
+    kind = kind_between(state, overlap, closing, k_n, 2.0 * eta_d / left, way, left, before, tension, dt)
+    none = (0.0, 0.0, 0.0)
+    if kind == TOUCHES:
+        return touch(
+            overlap, closing, m, eta_d, way, after, before, left, m_t, k_sd, eta_sd, s, rules, law, c
         )
-        return BEGAN, 0.0, f_n, e_n, f_n, True, e, b, slid, math.inf
-    if kind == MAY_END:
-        rest = rest if state == BEGAN else 0.0
-        ends, rest, f_n, raw, b, slid, until = end_contact(
-            rest, overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, p, f_t, s, tension, rules, law, c
+    if kind == MAY_PART:
+        return part(
+            state, overlap, closing, f_n, m, eta_d, way, after, before, left, m_t, k_sd, eta_sd, p, f_t, s,
+            tension, rules, law, c,
+        )  # fmt: skip
+    if is_held(state):
+        spent = spent_in_touch(overlap, closing, way, after, before, left, m, k_n)
+        dash, rub = after_kick(state, closing, f_n, eta_d, eta_sd, rules, dt)
+        push = dash * s[0] + rub * f_t[0], dash * s[1] + rub * f_t[1], dash * s[2] + rub * f_t[2]
+        return Middle(
+            state, (left - 1.0) * closing, (way - dt * left) * closing, push, p, spent, 0.0, 0.0, math.inf
         )
-        if ends:
-            return ENDING, rest, f_n, e_n, raw, True, none, b, slid, until
-        return HELD, 0.0, f_n, e_n, raw, False, none, none, False, math.inf
-    return HELD, 0.0, raw, e_n, raw, False, none, none, False, math.inf
+    return Middle(state, 0.0, 0.0, none, none, 0.0, 0.0, 0.0, math.inf)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.contact_instants import ENDING, PARTED
-from ryusa.engine.shared.dashpots import make_springs_of
+from ryusa.engine.shared.contact_instants import BEGAN
+from ryusa.engine.shared.dashpots import make_springs_of, normal_springs_of
 from ryusa.engine.shared.layout import Layout
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
@@ -38,24 +38,21 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     if variant.hertz:
         overlap = rows[:, M.OVERLAP]
         dash_n = rows[:, M.F_N] - eta[:, M.K_HERTZ] * overlap * np.sqrt(overlap)
-    spring_s, rest = rows[:, M.SPRING_S : M.SPRING_S + 3], np.zeros(n)
-    ending = states == ENDING
-    if ending.any():
-        rest[ending] = rows[ending, M.REST_OF_CLOSING]
-        spring_s = np.where(ending[:, None], 0.0, spring_s)
+    k_n = np.zeros(n)
+    if variant.exact:  # with which the energy of a spring is f**2/(2 k)
+        k_n = eta[:, M.K_N] ** 2 / eta[:, M.STORED]
     return Contacts(
         i=i,
         j=j,
-        spring_s=spring_s,
+        spring_s=rows[:, M.SPRING_S : M.SPRING_S + 3],
         dash_s=rows[:, M.DASH_S : M.DASH_S + 3],
         dash_n=dash_n,
         f_n=rows[:, M.F_N],
         spring_r=rows[:, M.SPRING_R : M.SPRING_R + 3] if variant.rolling else np.zeros((n, 3)),
         dash_r=rows[:, M.DASH_R : M.DASH_R + 3] if variant.rolling else np.zeros((n, 3)),
         eta_n=eta[:, M.ETA_N],
-        k_n=eta[:, M.K_N] if variant.exact else np.zeros(n),
+        k_n=k_n,
         state=states.astype(np.int64),
-        rest_of_closing=rest,
         overlap=overlap,
         event=rows[:, variant.event_column :] if variant.events else np.zeros((n, N_EVENT)),
     )
@@ -75,11 +72,11 @@ def memory_of(
         make_springs_of(variant.kind)(
             contacts.i[some], contacts.j[some], variant.rotation, law, layout.m, x, layout.inertia, mine
         )
+        if choice.rebound:
+            mine[:, M.ETA_N] = contacts.eta_n[some]
+        if choice.rebound and variant.exact:
+            normal_springs_of(contacts.i[some], contacts.j[some], law, layout.m, mine)
         eta[some] = mine
-    if choice.rebound:
-        eta[:, M.ETA_N] = contacts.eta_n
-        if variant.exact:
-            eta[:, M.K_N] = contacts.k_n
     rows[:, M.SPRING_S : M.SPRING_S + 3], rows[:, M.DASH_S : M.DASH_S + 3] = (
         contacts.spring_s,
         contacts.dash_s,
@@ -95,14 +92,12 @@ def memory_of(
     if variant.events:
         rows[:, variant.event_column :] = contacts.event
     states = contacts.state.astype(np.uint8) if variant.exact else np.ones(len(contacts), np.uint8)
-    ending = states == ENDING
-    rows[ending, M.REST_OF_CLOSING] = contacts.rest_of_closing[ending]
     return ContactMemory(contacts.i, contacts.j, states, eta, rows)
 
 
 def contacts_of_grains(memory: ContactMemory, n: int) -> np.ndarray:
     """Partners that each of n free grains touched in the last step, int32."""
-    touches = memory.states != PARTED
+    touches = memory.states != BEGAN  # since the last step
     i, j = memory.i[touches], memory.j[touches]
     return np.bincount(np.concatenate([i, j[j < n]]), minlength=n).astype(np.int32)
 

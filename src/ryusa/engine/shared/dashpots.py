@@ -9,7 +9,7 @@ from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_for_restitution
 from ryusa.laws.contact import damping, damping_in_steps
-from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
+from ryusa.laws.contact_map import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.dispatch import wet_restitution
 from ryusa.laws.hertz import hertz_damping, hertz_stiffness, mindlin_damping
 from ryusa.laws.immersed import stokes_number
@@ -28,21 +28,26 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
 
 
 @inner(fastmath=FAST)
-def springs_of_maps(
-    i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
-) -> tuple[float, float, float, float]:
-    """Dashpots [N s/m] and stiffnesses [N/m] of the normal and tangential map of a pair (contact_map.py)."""
+def normal_kicks(at: int, k: float, m: float, dt: float, out: Any) -> None:
+    """Fill the normal columns of row `at` of `out` from the dashpot at kicks that it has (memory_rows.py)."""
+    out[at, M.K_N], out[at, M.WAY], out[at, M.AFTER], out[at, M.STORED], _ = springs_of_kicks(
+        k, out[at, M.ETA_N], m, dt
+    )
+    out[at, M.MASS] = m
+
+
+@inner(fastmath=FAST)
+def kicks_of_pair(
+    at: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+) -> None:
+    """Fill row `at` of `out` with the springs and dashpots of a pair with exact timing (memory_rows.py)."""
     m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
     m_n = effective_mass(m[i], m[j])
     eta_n = c[P.ETA_N] + damping(c[P.ZETA_N], c[P.K_N], m_n)
-    eta_s = c[P.ETA_S] + damping(c[P.ZETA_S], c[P.K_S], m_t)
-    dt = c[P.DT]
-    return (
-        dashpot_of_map(eta_n, m_n, dt),
-        dashpot_of_map(eta_s, m_t, dt),
-        spring_of_map(c[P.K_N], eta_n, m_n, dt),
-        spring_of_map(c[P.K_S], eta_s, m_t, dt),
-    )
+    eta_s = dashpot_of_kick(c[P.ETA_S] + damping(c[P.ZETA_S], c[P.K_S], m_t), m_t, c[P.DT])
+    out[at, M.ETA_N], out[at, M.ETA_S] = dashpot_of_kick(eta_n, m_n, c[P.DT]), eta_s
+    normal_kicks(at, c[P.K_N], m_n, c[P.DT], out)
+    _, _, _, _, out[at, M.K_S] = springs_of_kicks(c[P.K_S], eta_s, m_t, c[P.DT])
 
 
 @inner(fastmath=FAST)
@@ -67,9 +72,7 @@ def set_springs(
 ) -> None:
     """Fill row `at` of `out` with the dashpots, and those of a kind with the stiffnesses, of pair i, j."""
     if kind == M.OF_MAPS:
-        out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_N], out[at, M.K_S] = springs_of_maps(
-            i, j, rotation, c, m, x, inertia
-        )
+        kicks_of_pair(at, i, j, rotation, c, m, x, inertia, out)
     elif kind == M.HERTZ:
         out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(
             i, j, rotation, c, m, x, inertia
@@ -89,9 +92,7 @@ def make_set_springs(kind: int) -> Any:
     ) -> None:
         """Fill row `at` of `out` with the dashpots and stiffnesses of pair i, j."""
         if of_maps:
-            out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_N], out[at, M.K_S] = springs_of_maps(
-                i, j, rotation, c, m, x, inertia
-            )
+            kicks_of_pair(at, i, j, rotation, c, m, x, inertia, out)
         elif of_spheres:
             out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(
                 i, j, rotation, c, m, x, inertia
@@ -114,6 +115,13 @@ def make_springs_of(kind: int) -> Any:
             set_springs_of_kind(k, i[k], j[k], rotation, c, m, x, inertia, out)
 
     return springs_of
+
+
+@kernel()
+def normal_springs_of(i: Any, j: Any, c: Any, m: Any, out: Any) -> None:
+    """Fill the normal springs of pairs i, j with exact timing from the dashpots that `out` has."""
+    for k in range(len(i)):
+        normal_kicks(k, c[P.K_N], effective_mass(m[i[k]], m[j[k]]), c[P.DT], out)
 
 
 @inner(fastmath=FAST)
@@ -143,12 +151,13 @@ def dashpot_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, 
 
 
 @inner(fastmath=FAST)
-def spring_immersed(
-    choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
-) -> tuple[float, float]:
-    """Normal dashpot [N s/m] and stiffness [N/m] of its map, as in `dashpot_immersed`."""
+def springs_immersed(
+    at: int, choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any, out: Any
+) -> None:
+    """Give row `at` of `out` the normal dashpot of `dashpot_immersed`, and the kicks that it makes."""
     m_n, eta = damping_immersed(choice, closing, i, j, c, m, w)
-    return dashpot_of_map(eta, m_n, c[P.DT]), spring_of_map(c[P.K_N], eta, m_n, c[P.DT])
+    out[at, M.ETA_N] = dashpot_of_kick(eta, m_n, c[P.DT])
+    normal_kicks(at, c[P.K_N], m_n, c[P.DT], out)
 
 
 @kernel()

@@ -77,10 +77,10 @@ def read_account(state: State, stats: Floats, terms: Floats, block: EngineBlock 
 
 
 def _whole(block: EngineBlock, name: str, rows: int, columns: int) -> Floats:
-    """An account of a block, with the term of walls, which earlier versions lack, as zero."""
-    earlier = name in block.arrays and block.arrays[name].shape == (rows, columns - 1)
-    found = block.array(name, (rows, columns - 1 if earlier else columns), _LARGEST)
-    return np.hstack([found, np.zeros((rows, 1))]) if earlier else found
+    """An account of a block, with the last terms, which earlier versions lack, as zero."""
+    shape = block.arrays[name].shape if name in block.arrays else ()
+    have = min(shape[1], columns) if len(shape) == 2 else columns
+    return np.hstack([block.array(name, (rows, have), _LARGEST), np.zeros((rows, columns - have))])
 
 
 def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:

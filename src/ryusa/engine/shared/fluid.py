@@ -20,6 +20,7 @@ CONTINUE, HOLD, DRY = numbers(__name__, Above.CONTINUE, Above.HOLD, Above.DRY)
 WEIGHT, STRESS, PRESSURE = numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
 B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LIFT), int(Term.FLOW)
 B_FILM = int(Term.FILM)
+B_STEP, B_DASH_N, B_DASH_S, B_SLIDE = int(Term.STEP), int(Term.DASH_N), int(Term.DASH_S), int(Term.SLIDE)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -97,12 +98,17 @@ def torque_over_spin(
 
 @inner(fastmath=FAST)
 def close_fluid_interval(account: Any, stats: Any) -> None:
-    """Book the second half of the work of the water in the step before."""
+    """Book what belongs to the interval after the last step: of water, and of contacts with exact timing."""
     account[B_DRAG] += stats[S.PENDING_DRAG]
     account[B_TORQUE] += stats[S.PENDING_TORQUE]
     account[B_LIFT] += stats[S.PENDING_LIFT]
     account[B_FLOW] += stats[S.PENDING_FLOW]
     account[B_FILM] -= stats[S.PENDING_FILM]
+    account[B_STEP] += stats[S.PENDING_STEP]
+    account[B_DASH_N] += stats[S.PENDING_DASH_N]
+    account[B_DASH_S] += stats[S.PENDING_DASH_S]
+    account[B_SLIDE] += stats[S.PENDING_SLIDE]
+    stats[S.PENDING_STEP] = stats[S.PENDING_DASH_N] = stats[S.PENDING_DASH_S] = stats[S.PENDING_SLIDE] = 0.0
     stats[S.PENDING_DRAG] = stats[S.PENDING_TORQUE] = stats[S.PENDING_LIFT] = stats[S.PENDING_FLOW] = stats[
         S.PENDING_FILM
     ] = 0.0

@@ -31,12 +31,5 @@ def material_arrays(scene: Scene) -> tuple[Any, Any]:
 
 
 def common_parameters(scene: Scene) -> Floats:
-    """Parameters that kernels read for all pairs alike.
-
-    A contact may end within a step where that is so for any two materials.
-    """
-    found = P.parameters_of(replace(scene, materials=None))
-    if scene.materials is not None:
-        used = [P.parameters_of(scene.of_pair(k)) for k in range(scene.materials.n**2)]
-        found[P.FADING] = min(row[P.FADING] for row in used)
-    return found
+    """Parameters that kernels read for all pairs alike."""
+    return P.parameters_of(replace(scene, materials=None))

@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from ryusa.laws.collision import zeta_for_restitution
-from ryusa.laws.contact import damping
-from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
-from ryusa.laws.families import ContactForce, ContactTiming, Rebound
+from ryusa.laws.families import ContactForce
 from ryusa.laws.hertz import effective_modulus, mindlin_ratio
 from ryusa.model import Scene
 from ryusa.model.scene import Damping, Floats
@@ -47,39 +44,15 @@ ASPERITY = 33
 ST_C = 34
 E_DRY = 35  # restitution of the case, in air [-]
 E_LEAST = 36
-FADING = 37  # a contact goes on through a step where so much of its force outweighs the fall of its spring
-E_EFFECTIVE = 38  # of elastic spheres [Pa]; else 0
-MINDLIN = 39  # their tangential stiffness over K sqrt(overlap) [-]
-TWISTING = 40  # largest torque about the normal over f_n R* [-]
-ADHESION = 41  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
+E_EFFECTIVE = 37  # of elastic spheres [Pa]; else 0
+MINDLIN = 38  # their tangential stiffness over K sqrt(overlap) [-]
+TWISTING = 39  # largest torque about the normal over f_n R* [-]
+ADHESION = 40  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
 N_PARAMETER = ADHESION + 1
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
 LARGEST_DISPLACEMENT = 0.25
-
-
-# The next force of the map over the present one up to which the true force may end within the step: 0.051 for
-# a damping ratio of 0.9 to 5 and 3 steps per contact or more, less elsewhere (design/0014).
-LEAST_NEXT = 1.0 / 16.0
-
-
-def fading(scene: Scene) -> float:
-    """Factor of the force of a contact that goes on through a step [-] (`contact_instants.may_end`).
-
-    The next force of a pair on its map is (t - 1) f + k_d v dt, with its trace t, force f, closing speed v.
-    It is above `LEAST_NEXT` f where (t - 1 - `LEAST_NEXT`) f is above -k_d v dt. The least t is that of the
-    lightest pair with the largest dashpot.
-    """
-    law, lightest = scene.contact, 0.5 * float((scene.m + scene.m_added).min(initial=np.inf))
-    if law.timing != ContactTiming.EXACT or not np.isfinite(lightest):
-        return 0.0
-    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else 0.0
-    if scene.water.rebound != Rebound.DRY:
-        zeta = max(zeta, zeta_for_restitution(scene.water.e_least, law.tension))
-    eta = law.eta_n + damping(zeta, law.k_n, lightest)
-    dt, eta_d = scene.dt, dashpot_of_map(eta, lightest, scene.dt)
-    return 2.0 - (eta_d + spring_of_map(law.k_n, eta, lightest, dt) * dt) * dt / lightest - 1.0 - LEAST_NEXT
 
 
 def parameters_of(scene: Scene) -> Floats:
@@ -125,7 +98,6 @@ def parameters_of(scene: Scene) -> Floats:
         ST_C: water.st_c,
         E_DRY: law.e_n,
         E_LEAST: water.e_least,
-        FADING: fading(scene),
         E_EFFECTIVE: 0.0,
         MINDLIN: 0.0,
         TWISTING: rolling.twisting,

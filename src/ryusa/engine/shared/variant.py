@@ -38,7 +38,7 @@ class KernelVariant(NamedTuple):
     @property
     def springs(self) -> int:
         """Dashpots and stiffnesses kept for each pair."""
-        return M.N_SPRING if self.kind else M.K_N
+        return (M.K_N, M.N_SPRING_OF_MAPS, M.N_SPRING)[self.kind]
 
     @property
     def kind(self) -> int:
@@ -91,6 +91,7 @@ class MotionKind(NamedTuple):
     bodies: int
     water: int
     column: int
+    exact: int  # grains move after the shear of their contacts
     laws: FluidLaws
 
 
@@ -179,5 +180,5 @@ def motion_kind(variant: KernelVariant, choice: LawChoice) -> MotionKind:
         laws = laws._replace(torque=0)
     return MotionKind(
         variant.plane_case, variant.rotation, int(variant.rolling or variant.events), variant.film,
-        variant.bodies, variant.water, variant.column, laws,
+        variant.bodies, variant.water, variant.column, variant.exact, laws,
     )  # fmt: skip
