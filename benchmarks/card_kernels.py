@@ -12,6 +12,7 @@ import importlib
 import json
 import re
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -51,9 +52,9 @@ KINDS = {
     "exact timing, plane, records, may pull": (
         KernelVariant(1, 1, 0, 1, 0, 0, 0, 1), DRY._replace(events=2, tension=1, slip=1),
     ),
-    "elastic spheres, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0, 0, 1), DRY),
+    "elastic spheres, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0, 0, hertz=1), DRY),
     "elastic spheres, column, films, rolling, records": (
-        KernelVariant(0, 1, 1, 1, 1, 1, 1, 0, 1),
+        KernelVariant(0, 1, 1, 1, 1, 1, 1, 0, hertz=1),
         DRY._replace(
             rolling=3, arm=1, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2,
             magnus=2, rebound=1, slip=2, cap=1, unloading=1,
@@ -143,18 +144,43 @@ def step_kernel(kind: str) -> Kernel:
     )  # fmt: skip
 
 
+def shear_kernel(kind: str) -> Kernel:
+    """What grains do between the kicks of one kind of scene with exact timing."""
+    from ryusa.engine.cuda import step_totals as T
+    from ryusa.engine.cuda.arrays import ON_CARD
+    from ryusa.engine.cuda.shear import make_shear
+
+    bodies, walls, pairs = groups()
+    arguments = (COUNT, COUNT, F1, I1, F1, bodies, walls, pairs, F1)
+    return Kernel(
+        f"shear: {kind}", make_shear(*KINDS[kind], ON_CARD), arguments, ON_CARD.threads,
+        8 * ON_CARD.threads * T.N_OF_SHEAR,
+    )  # fmt: skip
+
+
+def kernels_of_kind(kind: str) -> Iterator[Kernel]:
+    """Those that step one kind of scene."""
+    yield step_kernel(kind)
+    if KINDS[kind][0].exact:
+        yield shear_kernel(kind)
+
+
 def other_kernels() -> Iterator[Kernel]:
-    """The kernel that closes a step, and those of the search."""
+    """The kernels that close a step, and those of the search."""
     from ryusa.engine.cuda import step_totals as T
     from ryusa.engine.cuda import verlet_list
     from ryusa.engine.cuda.arrays import ON_CARD
+    from ryusa.engine.cuda.shear import make_close_kicks, make_close_shear
     from ryusa.engine.cuda.step import make_close
 
     bodies, walls, pairs = groups()
-    yield Kernel(
-        "close", make_close(ON_CARD), (COUNT, COUNT, F1, F1, I1, F1, F2, F2), ON_CARD.closers,
-        8 * ON_CARD.segments * T.N_COLUMN,
-    )  # fmt: skip
+    closing = COUNT, COUNT, F1, F1, I1, F1, F2, F2
+    for name, make, arguments, columns in (
+        ("close", make_close, closing, T.N_COLUMN),
+        ("close_kicks", make_close_kicks, closing, T.N_COLUMN),
+        ("close_shear", make_close_shear, closing[:-1], T.N_OF_SHEAR),
+    ):
+        yield Kernel(name, make(ON_CARD), arguments, ON_CARD.closers, 8 * ON_CARD.segments * columns)
     for name, arguments in (
         ("fill", (I1, COUNT)),
         ("wrap_grains", (COUNT, F2, I42, I4, F1, F2, I1)),
@@ -223,7 +249,7 @@ def main() -> None:
     dispatcher: Any = importlib.import_module("numba.cuda.dispatcher")
     dispatcher.get_current_device = card_of(cc)
     rows: list[dict[str, Any]] = []
-    for kernel in (*map(step_kernel, KINDS), *other_kernels()):
+    for kernel in (*chain.from_iterable(map(kernels_of_kind, KINDS)), *other_kernels()):
         _, taken = compile_kernel(kernel, cc)
         blocks, share = taken.occupancy(LIMITS[cc])
         found = taken._asdict() | {"blocks a multiprocessor": blocks, "occupancy": share}

@@ -15,8 +15,8 @@ from benchmarks.card_kernels import (
     Resources,
     card_of,
     compile_kernel,
+    kernels_of_kind,
     other_kernels,
-    step_kernel,
 )
 
 from ryusa.engine import registry
@@ -105,15 +105,12 @@ def entry(kernel: Kernel) -> str:
     "kind", [one if one in SHOWN else pytest.param(one, marks=pytest.mark.slow) for one in KINDS]
 )
 def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str) -> None:
-    ptx = entry(step_kernel(kind))
-    assert ".f64" in ptx
-    for space in (
-        "global",
-        "shared",
-        "local",
-    ):  # exp rounds an exponent in single precision, nothing is kept so
-        assert f"{space}.f32" not in ptx
-    assert "atom.global.add.f64" not in ptx  # no sum may depend on which thread comes first
+    for kernel in kernels_of_kind(kind):
+        ptx = entry(kernel)
+        assert ".f64" in ptx
+        for space in ("global", "shared", "local"):  # exp rounds an exponent in single, nothing is kept so
+            assert f"{space}.f32" not in ptx
+        assert "atom.global.add.f64" not in ptx  # no sum may depend on which thread comes first
 
 
 @pytest.mark.full
@@ -127,7 +124,8 @@ def test_every_other_kernel_becomes_ptx() -> None:
         names.add(kernel.name)
     compiled = importlib.import_module("numba.cuda.dispatcher").CUDADispatcher
     known = {name: one for name, one in vars(verlet_list).items() if isinstance(one, compiled)}
-    assert names == {name for name, one in known.items() if not one.targetoptions["device"]} | {"close"}
+    closing = {"close", "close_kicks", "close_shear"}
+    assert names == {name for name, one in known.items() if not one.targetoptions["device"]} | closing
 
 
 def test_occupancy_follows_from_registers_threads_and_shared_memory() -> None:

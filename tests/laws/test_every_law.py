@@ -98,7 +98,7 @@ def test_compiled_and_plain_python_agree(law, data):
     ):  # plain Python raises where compiled gives inf or nan
         assume(False)
     expected = list(plain) if isinstance(plain, tuple) else [plain]
-    assert law(*args) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
+    assert law(*args) == pytest.approx(expected, rel=1e-11, abs=1e-12, nan_ok=True)
 
 
 def test_nan_is_passed_on(law):

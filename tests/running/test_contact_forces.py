@@ -13,6 +13,7 @@ from tests.kernel_variants import full_but
 
 from ryusa.build import scene as scene_of
 from ryusa.errors import ResultsError
+from ryusa.laws.families import ContactTiming
 from ryusa.model import Scene, State
 from ryusa.model.contacts import Contacts
 from ryusa.results import Results
@@ -40,6 +41,7 @@ def heap(plane: bool) -> tuple[Scene, State]:
         period=(math.inf, math.inf if plane else 4.0 * D),
         slope=0.3,
         plane_case=plane,
+        timing=ContactTiming.AT_STEPS,  # else half of a dashpot acts between two steps
         steps_per_contact=20.0,
     )
     return replace(scene, forces=True), state

@@ -152,9 +152,8 @@ def kick_and_shear(dt: float, a: float, q: float) -> tuple[float, float, float, 
     # from half the time, so that nothing is the difference of two large numbers
     g, h = free_response(0.5 * dt, a, q)
     left, way = exp(-a * dt), 2.0 * g * (h + a * g)
-    both = (1.0 - left) * (1.0 - left) + 4.0 * q * g * g
-    more = (1.0 - left) * (1.0 + left) - 2.0 * a * way
-    return way, 0.5 * (both + more) / way, 0.5 * (both - more) / way, left
+    turned, gone = 2.0 * q * g * g, 1.0 - left
+    return way, (turned + gone - a * way) / way, (turned + a * way - left * gone) / way, left
 
 
 @step_law

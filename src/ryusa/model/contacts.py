@@ -32,7 +32,7 @@ EVENT = np.dtype(
     ]
 )
 N_EVENT = EVENT.itemsize // 8
-N_STATE = 5  # states of a pair in contact
+N_STATE = 6  # states of a pair in contact
 
 
 def joined(events: Sequence[np.ndarray]) -> np.ndarray:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.collision import effective_mass_tangential
+from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping
 from ryusa.laws.contact_map import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.families import Adhesion, ContactForce, ContactTiming
@@ -48,8 +48,10 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, math.inf)])
     both = np.column_stack([m[i], r[i], inertia[i], m[j], r[j], inertia[j]])
     kinds, place = np.unique(both, axis=0, return_inverse=True)
-    found = np.array([_spring_of_kicks(scene, *(float(one) for one in kind)) for kind in kinds])
-    return k_n, found[place.ravel()]
+    found = np.array([_springs_of_kicks(scene, *(float(one) for one in kind)) for kind in kinds])[
+        place.ravel()
+    ]
+    return found[:, 0], found[:, 1]
 
 
 def pair_attractions(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
@@ -83,10 +85,14 @@ def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Flo
     return k_n, mindlin_ratio(law.poisson_ratio) * k_n
 
 
-def _spring_of_kicks(
+def _springs_of_kicks(
     scene: Scene, m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
-) -> float:
+) -> tuple[float, float]:
     law = scene.contact
+    m_n = effective_mass(m_i, m_j)
     m_t = effective_mass_tangential(m_i, r_i, inertia_i, m_j, r_j, inertia_j, bool(scene.rotation))
     eta_s = law.eta_s + damping(law.zeta_s, law.k_s, m_t)
-    return springs_of_kicks(law.k_s, dashpot_of_kick(eta_s, m_t, scene.dt), m_t, scene.dt)[-1]
+    eta_n = law.eta_n + damping(law.zeta_n, law.k_n, m_n)
+    normal = springs_of_kicks(law.k_n, dashpot_of_kick(eta_n, m_n, scene.dt), m_n, scene.dt)
+    tangential = springs_of_kicks(law.k_s, dashpot_of_kick(eta_s, m_t, scene.dt), m_t, scene.dt)
+    return normal[0], tangential[-1]

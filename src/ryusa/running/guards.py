@@ -13,6 +13,9 @@ CREATED = 0.5
 _AT_REST = 1e-3  # of the weight of all grains times a diameter; less is round-off in a bed at rest
 
 
+_ROUND_OFF = 1e-12  # of the largest term of an account
+
+
 def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | None:
     """Return an error if the grains gained energy that no force supplied; None if the account closes.
 
@@ -26,7 +29,7 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
     that is too long for the springs, not the work of a force.
     """
     created = tally.imbalance + tally.terms[Term.STEP]
-    if not created > 0.0:
+    if not created > _ROUND_OFF * max(map(abs, tally.terms)):
         return None
     held = {name: getattr(tally, name) for name in HELD}
     share = residual_of(created, held, dict(zip(Term, tally.terms, strict=True)))

@@ -167,8 +167,9 @@ class _Reader:
             names["terms"] = "tally/books"
         given = {name: values[key] for name, key in names.items() if name != "walls" or key in values}
         lengths = {"terms": N_TERM, "pending": len(PENDING), "walls": N_WALL_IMPULSE * self._scene.n_wall}
-        for name in ("terms", "pending"):  # earlier versions lack the last terms
-            given[name] = [*given[name], *[0.0] * (lengths[name] - len(given[name]))]
+        for name, most in (("terms", 1), ("pending", 5)):  # earlier versions lack some of the last terms
+            lacks = lengths[name] - len(given[name])
+            given[name] = [*given[name], *[0.0] * (lacks if lacks <= most else 0)]
         found: dict[str, Any] = {}
         for name, value in given.items():
             values = [float(one) for one in (value if name in lengths else [value])]

@@ -16,7 +16,7 @@ from ryusa.cli import app
 from ryusa.errors import CaseError
 from ryusa.studies.soften import Answer, study_of
 
-SHORT = {"stop.saltations": "3", "record.settle": "0.1 s", "build.starts": "2"}
+SHORT = {"stop.saltations": "5", "record.settle": "0.1 s", "build.starts": "2"}
 SET = [word for key, value in SHORT.items() for word in ("--set", f"{key}={value}")]
 MEASURE = ("--measure", "saltation", "--value", "jump_length")
 

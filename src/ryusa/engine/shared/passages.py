@@ -27,6 +27,7 @@ from ryusa.engine.shared.passing_bodies import (
     split,
     with_bodies,
 )
+from ryusa.laws.families import ContactTiming
 from ryusa.model import BodyState, Scene, State, Tally, Term
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import N_EVENT
@@ -144,13 +145,21 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
     v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
     before = v - dt * (weight + force[ids]) / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * before))
-    spin = 0.0
+    spin, omega = 0.0, state.omega[ids]
     if scene.rotation:
-        omega, inertia = state.omega[ids], scene.inertia[ids, None]
+        inertia = scene.inertia[ids, None]
         spin = 0.5 * float(np.sum(inertia * omega * (omega - dt * torque[ids] / inertia)))
     potential = _height(scene, state, ids, state.x[ids] - dt * v)
     held = Held(kinetic, spin, potential) + held_by_bodies(scene, state, which, force, torque)
     less = _entered(state, -held.kinetic, -held.spin, -held.potential, springs, to_partners)
+    if less is not None and scene.contact.timing == ContactTiming.EXACT:
+        # what contacts would still have done to the grains in the interval after the step
+        later = float(np.sum(force[ids] * v)) + (
+            float(np.sum(torque[ids] * omega)) if scene.rotation else 0.0
+        )
+        pending = list(less.pending)
+        pending[PENDING.index(Term.STEP)] -= 0.5 * dt * later
+        less = replace(less, pending=tuple(pending))
     return less if less is None else _without_work(less, of_walls)
 
 
