@@ -285,8 +285,8 @@ def test_bad_arrays_of_a_script_are_refused_by_name(keys: dict[str, object]) -> 
     [
         ("density", 0.0), ("stiffness", -1e4), ("stiffness", math.nan), ("shear_ratio", -0.1),
         ("restitution", 1.5), ("restitution", 0.0), ("restitution_shear", math.nan), ("friction", -0.1),
-        ("gravity", math.inf),
-        ("slope", 1.6), ("dt", 0.0), ("steps_per_contact", 0.0), ("period", (0.0, math.inf)),
+        ("gravity", math.inf), ("density", [2650.0]), ("slope", 1.6), ("dt", 0.0),
+        ("steps_per_contact", 0.0), ("period", (0.0, math.inf)),
     ],
 )  # fmt: skip
 def test_a_number_of_a_script_out_of_range_is_refused_by_name(key: str, value: object) -> None:

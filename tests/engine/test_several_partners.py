@@ -11,8 +11,8 @@ from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import APART, HELD, is_held, middle_of_pair, pushes
-from ryusa.laws.contact_map import springs_of_kicks
 from ryusa.laws.families import ContactTiming
+from ryusa.laws.kick_and_shear import springs_of_kicks
 from ryusa.model import Term
 
 M, K = 2.0, 3.0e4
@@ -26,8 +26,8 @@ def step(overlap, closing, k_d, way, after, stay, c):
     kicked = closing - (k_d * overlap * dt / M if pushes(float(APART), overlap) else 0.0)
     state = float(HELD if overlap > 0.0 else APART)
     found = middle_of_pair(
-        state, overlap, kicked, k_d * overlap, M, 0.0, k_d, way, after, M, 0.0, 0.0, none, none, none, stay,
-        (True, False, True), (K, 0.0, 0.0, 0.0), c,
+        state, overlap, kicked, 0.0, k_d * overlap, M, 0.0, k_d, way, after, M, 0.0, 0.0, none, none, none,
+        stay, (True, False, True), (K, 0.0, 0.0, 0.0), c,
     )  # fmt: skip
     u = kicked + found.change
     return overlap + dt * u + found.shift, u, is_held(found.state)

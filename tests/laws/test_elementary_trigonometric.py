@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from tests.laws.test_elementary import answers_of, over
 
-from ryusa.laws import contact_map
 from ryusa.laws import elementary_trigonometric as trigonometric
+from ryusa.laws import kick_and_shear
 
 RNG = np.random.default_rng(21)
 
@@ -42,7 +42,7 @@ def test_the_free_response_is_that_of_the_closed_form(zeta):
     w, long = root(np.array([q])), t.astype(np.longdouble)
     g = (np.exp(-a * long) * np.sin(w * long) / w).real
     h = (np.exp(-a * long) * np.cos(w * long)).real - a * g
-    found = np.array([contact_map.free_response(one, a, q) for one in t])
+    found = np.array([kick_and_shear.free_response(one, a, q) for one in t])
     assert np.abs(found[:, 0] - g).max() < 1e-14
     assert np.abs(found[:, 1] - h).max() < 1e-14
 
@@ -53,7 +53,7 @@ def test_a_loop_becomes_vector_instructions_without_a_call(name):
 
     function = getattr(trigonometric, name, None)
     if function is None:
-        law = getattr(contact_map, name)
+        law = getattr(kick_and_shear, name)
 
         @njit(forceinline=True, error_model="numpy")
         def function(x):

@@ -24,7 +24,7 @@ BLIND = {
     ("contact.slide", "size"),
     ("contact.slide", "tau_c"),
     # the step of a contact: not used in a plane
-    ("contact_map.time_of_release", "q"),  # of a pair whose stiffness is no number: then its force is none
+    ("kick_and_shear.time_of_release", "q"),  # of a pair whose stiffness is no number: then its force is none
     *(("contact_step.contact_force", name) for name in ("n_y", "h_y", "h_z")),
     *(("contact_step.contact_kinematics", name) for name in ("d_y", "u_y", "w_ix", "w_iz", "w_jx", "w_jz")),
     ("contact_step.contact_kinematics", "dt"),

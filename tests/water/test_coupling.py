@@ -69,11 +69,17 @@ def test_a_grain_whose_height_is_not_finite_is_named_with_its_step():
         coupling.exchange(x, first.v, np.zeros((len(x), N_IMPULSE)))
 
 
+@pytest.mark.parametrize("collide", [False, True])
 @pytest.mark.parametrize("form", FORMS)
-def test_grains_and_water_together_gain_what_weight_and_bed_give(form):
+def test_grains_and_water_together_gain_what_weight_and_bed_give(form, collide):
     every = {"lift": Lift.WIBERG_SMITH, "magnus": Magnus.LOTH, "hindrance": Hindrance.DI_FELICE}
-    made, area = cloud(form, torque=WaterTorque.DENNIS, **every)
-    fixed, dt = made[0], made[0].dt
+    (fixed, first), area = cloud(form, torque=WaterTorque.DENNIS, **every)
+    if collide:  # in pairs of unlike density: a contact moves the water that goes along with a grain, too
+        fixed = replace(fixed, m=fixed.m * np.where(np.arange(40) % 2, 1.0, 0.7))
+        x, v = first.x.copy(), first.v.copy()
+        x[1::2], v[::2] = x[::2] + np.array((0.96 * D, 0.0, 0.3 * D)), [0.5, 0.0, 0.0]
+        first = replace(first, x=x, v=v)
+    made, dt = (fixed, first), fixed.dt
     for coupling, _, steps, (_, v, _, _, v_now, _) in advance_together(made, column_of(area), 12):
         budget, time = coupling.budget, steps * dt
         grains = float(fixed.m @ (v_now[:, 0] - v[:, 0])) / (area * time)

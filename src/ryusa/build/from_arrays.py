@@ -262,7 +262,11 @@ def _shortest(contact: ContactLaw, m: float, r: float) -> float:
 
 def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], allowed: str) -> None:
     for name, one in numbers.items():
-        if one is not None and not (math.isfinite(one) and fits(one)):
+        if one is None:
+            continue
+        if np.ndim(one) > 0:
+            raise CaseError(name, one, "must be one number for all grains; see `materials` for several")
+        if not (math.isfinite(one) and fits(one)):
             raise CaseError(name, one, allowed)
 
 

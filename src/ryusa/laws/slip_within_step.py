@@ -1,6 +1,6 @@
 """Tangential motion of a contact over a part of a time step, with the normal motion of an oscillator.
 
-Used in the two steps of a contact in which it begins and ends (contact_map.py), where friction acts over a
+Used in the two steps of a contact in which it begins and ends (kick_and_shear.py), where friction acts over a
 part of a step only and its limit changes from or to zero.
 """
 
@@ -8,7 +8,7 @@ import math
 
 from ryusa.laws._law import step_law
 from ryusa.laws.contact import shear_strength, slide
-from ryusa.laws.contact_map import free_response
+from ryusa.laws.kick_and_shear import free_response
 
 PARTS = 2  # into which the span is cut (design/0014)
 

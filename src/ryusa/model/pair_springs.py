@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping
-from ryusa.laws.contact_map import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.families import Adhesion, ContactForce, ContactTiming
 from ryusa.laws.hertz import effective_modulus, hertz_stiffness, mindlin_ratio
+from ryusa.laws.kick_and_shear import dashpot_of_kick, springs_of_kicks
 from ryusa.model.contact_law import attraction_of
 from ryusa.model.scene import Floats, Scene
 

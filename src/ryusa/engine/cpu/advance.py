@@ -17,15 +17,16 @@ from ryusa.model.fluid import SUBMERGED
 
 @cache
 def make_advance(kind: MotionKind) -> Any:
-    """Build the piece that moves the grains of a block: advance(lo, hi, begins, last, b, work, held)."""
+    """Build the piece that moves the grains of a block: advance(lo, hi, b, held)."""
     rotation, column, plane = bool(kind.rotation), bool(kind.column), bool(kind.plane_case)
 
     @compiled(fastmath=FAST)
-    def advance(lo: int, hi: int, begins: bool, last: bool, b: int, work: Any, held: Any) -> None:
+    def advance(lo: int, hi: int, b: int, held: Any) -> None:
         """Give grains lo..hi-1 the impulses of their contacts between two kicks, and move them."""
         held = taken(held)
         c, grains, pairs, stats = held.c, held.grains, held.pairs, held.accounts.stats[b]
         x, v, w, v_pruned, shifts = grains.x, grains.v, grains.w, grains.v_pruned, grains.film
+        impulse = grains.impulse
         f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
         dt = c[P.DT]
         gravity = vec4_of(c[P.G_X], 0.0 if plane else c[P.G_Y], c[P.G_Z], 0.0)
@@ -36,11 +37,14 @@ def make_advance(kind: MotionKind) -> Any:
             fill4(f, 8 * i, 0.0)
             fill4(f, 8 * i + 4, 0.0)
             fill4(shifts, 4 * i, 0.0)
-            before, inverse = read4(v, 8 * i), grains.per_m[i]
+            before, inverse, added = read4(v, 8 * i), grains.per_m[i], 0.0
             if column:
                 added = (grains.m[i] - grains.m_bare[i]) * grains.fluid[i, SUBMERGED]
                 inverse = 1.0 / (grains.m_bare[i] + added)
             after = before + (dt * inverse) * push
+            if column:  # what moves along with the grain is taken from the water
+                gain = with_fourth(added * (after - before), 0.0)
+                write4(impulse, 4 * i, read4(impulse, 4 * i) - gain)
             way = dt * after + inverse * shift
             work_2 += inner_product(push, before + after)
             # beyond what the weight does with the velocities after one kick and before the next

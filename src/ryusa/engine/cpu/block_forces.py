@@ -12,12 +12,12 @@ from ryusa.engine.cpu.attraction import attract, make_energy_of_attraction
 from ryusa.engine.cpu.contact_rows import springs_of_row
 from ryusa.engine.cpu.exact_contact import keep_states, make_compute_kicks, spring_energy_of_kicks
 from ryusa.engine.cpu.hertz_contact import make_compute_hertz, spring_energy_hertz
+from ryusa.engine.cpu.lane_kinematics import overlap_of_lane
 from ryusa.engine.cpu.pair_batch import (
     make_compute,
     make_filter_pairs,
     make_gather,
     make_scatter,
-    overlap_of_lane,
 )
 from ryusa.engine.cpu.pair_physics import make_immersed_dashpots, make_optional_physics
 from ryusa.engine.cpu.simd.prefetch import prefetch
@@ -103,7 +103,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
         bool(kind.plane_case), bool(kind.mixed)
     )
     energy_of_attraction: Any = make_energy_of_attraction(hertz) if adhesive else None
-    gather = make_gather(M.OF_MAPS * kind.exact + M.HERTZ * kind.hertz, short, walled)
+    gather = make_gather(M.OF_KICKS * kind.exact + M.HERTZ * kind.hertz, short, walled)
     immersed_dashpots: Any = make_immersed_dashpots(hertz) if rebound and not exact else None
     optional_physics: Any = make_optional_physics(kind) if optional else None
 

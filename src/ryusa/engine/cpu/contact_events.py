@@ -28,7 +28,6 @@ from ryusa.engine.shared.dashpots import springs_immersed
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.collision import effective_mass_tangential
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 
 NEXT = B.PITCH  # from one row to the next
@@ -49,7 +48,7 @@ def find_events(m: int, batch: Any) -> tuple[int, int]:
 @cache
 def make_pack(rebound: bool) -> Any:
     """Build pack for contacts whose restitution depends on the water at touch, or not."""
-    begin_row = make_begin_row(M.OF_MAPS)
+    begin_row = make_begin_row(M.OF_KICKS)
 
     @inner(fastmath=FAST)
     def pack(
@@ -83,10 +82,7 @@ def make_pack(rebound: bool) -> Any:
             f_n = batch[B.SPRING + 4 * l + 3]
             batch[B.F_N_E + e] = bounding(f_n, f_n - batch[B.DASH + 4 * l + 3])
             batch[B.MASS_E + e] = batch[B.MASS + l] = eta[at, M.MASS]
-            batch[B.MASS_S_E + e] = effective_mass_tangential(
-                mass[i], batch[B.SPIN_I + 4 * l + 3], inertia[i], mass[j], batch[B.SPIN_J + 4 * l + 3],
-                inertia[j], rotation != 0,
-            )  # fmt: skip
+            batch[B.MASS_S_E + e] = eta[at, M.MASS_S]
             batch[B.ETA_N_E + e], batch[B.K_N_E + e] = eta[at, M.ETA_N], eta[at, M.K_N]
             batch[B.WAY_E + e], batch[B.AFTER_E + e] = eta[at, M.WAY], eta[at, M.AFTER]
             batch[B.ETA_S_E + e], batch[B.K_S_E + e] = eta[at, M.ETA_S], eta[at, M.K_S]

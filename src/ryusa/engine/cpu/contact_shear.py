@@ -17,6 +17,7 @@ from ryusa.compiled.piece import taken
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_events import find_events, make_events, make_pack, make_put_back
 from ryusa.engine.cpu.contact_rows import dashpot_row
+from ryusa.engine.cpu.lane_kinematics import kinematics_of_lane
 from ryusa.engine.cpu.pair_batch import make_filter_pairs, make_gather
 from ryusa.engine.cpu.pair_physics import make_records_between
 from ryusa.engine.cpu.simd.vec4 import add4, fill4, subtract4
@@ -29,14 +30,16 @@ from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import (
     NOTHING,
     after_kick,
+    bending,
     bounding,
+    half_dashpot,
     is_held,
     kind_between,
     spent_in_touch,
 )
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import ForcesKind
-from ryusa.laws.contact_step import contact_force, contact_kinematics
+from ryusa.laws.contact_step import contact_force
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.geometry import wrap
 
@@ -59,33 +62,21 @@ def _make_shears(plane: bool, mixed: bool) -> Any:
         """Geometry and velocities of every pair, its shear and half its dashpot, and what happens to it."""
         dt, l_x, l_y, k_n = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], c[P.K_N]
         for l in range(known_lanes(m, B.LANES)):
-            d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
-            u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
-            i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
-            j_x, j_y, j_z = batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2]
-            if plane:  # spin has one component; the zeros beside it are read to read all four of a group
-                i_y, j_y = i_x + i_y + i_z, j_x + j_y + j_z
-            else:
-                d_y, u_y = wrap(batch[B.SEPARATION + 4 * l + 1], l_y), batch[B.RELATIVE_VELOCITY + 4 * l + 1]
-            r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
-            n_x, n_y, n_z, overlap, a_i, a_j, closing, s_x, s_y, s_z, _ = contact_kinematics(
-                plane, d_x, d_y, d_z, r_i + r_j, r_i, u_x, u_y, u_z, i_x, i_y, i_z, j_x, j_y, j_z, dt
-            )
-            if not plane:
-                batch[B.NORMAL + B.PITCH + l] = n_y
-                batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l] = s_y, s_z
-            batch[B.NORMAL + l], batch[B.NORMAL + 2 * B.PITCH + l] = n_x, n_z
-            batch[B.SLIP + l] = s_x
-            batch[B.OVERLAP + l], batch[B.CLOSING + l] = overlap, closing
-            batch[B.ARM_I + l], batch[B.ARM_J + l] = a_i, a_j
+            overlap, closing = kinematics_of_lane(l, plane, 0.0, dt, l_x, l_y, batch)
             state, eta_d = batch[B.WAS_TOUCHING + l], batch[B.RELATIVE_VELOCITY + 4 * l + 3]
             k_law = batch[B.K_LAW + l] if mixed else k_n
             way, after = batch[B.WAY + l], batch[B.AFTER + l]
             m_n = batch[B.MASS + l]
             left, before = 1.0 - eta_d * dt / m_n, batch[B.K_N + l] * dt / m_n - after
+            u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
+            if not plane:
+                u_y = batch[B.RELATIVE_VELOCITY + 4 * l + 1]
+            distance = batch[B.TURNS + l] * (batch[B.SEPARATION + 4 * l + 3] - overlap)
+            bend = bending(u_x * u_x + u_y * u_y + u_z * u_z, closing, distance)
             kind = kind_between(
-                state, overlap, closing, k_law, 2.0 * eta_d / left, way, left, before, tension, dt
+                state, overlap, closing, bend, k_law, 2.0 * eta_d / left, way, left, before, tension, dt
             )
+            batch[B.BEND + l] = bend
             goes_on = is_held(state) and kind == NOTHING
             f_n = batch[B.SPRING + 4 * l + 3]
             f_n = bounding(f_n, f_n - batch[B.DASH + 4 * l + 3])
@@ -96,16 +87,21 @@ def _make_shears(plane: bool, mixed: bool) -> Any:
                 batch[B.SPRING + 4 * l + 1] + batch[B.DASH + 4 * l + 1],
             )
             f_z = batch[B.SPRING + 4 * l + 2] + batch[B.DASH + 4 * l + 2]
-            batch[B.PUSH + l] = dash * s_x + rub * f_x
+            s_x = batch[B.SLIP + l]
+            batch[B.PUSH + l], slip_2 = dash * s_x + rub * f_x, s_x * s_x
             if not plane:
+                s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
+                slip_2 += s_y * s_y + s_z * s_z
                 batch[B.PUSH + B.PITCH + l] = dash * s_y + rub * f_y
                 batch[B.PUSH + 2 * B.PITCH + l] = dash * s_z + rub * f_z
             spent = spent_in_touch(overlap, closing, way, after, before, left, m_n, k_law) if goes_on else 0.0
             batch[B.KIND + l], batch[B.WHEN + l], batch[B.SLIDES + l] = kind, math.inf, 0.0
             batch[B.CHANGE + l] = (left - 1.0) * closing if goes_on else 0.0
             batch[B.SHIFT + l] = (way - dt * left) * closing if goes_on else 0.0
+            spent_s = half_dashpot(-dash / dt, batch[B.MASS_S + l], dt) * slip_2 if goes_on else 0.0
             batch[B.DASH_N + l] += spent
-            batch[B.STEP + l] += spent
+            batch[B.DASH_S + l] += spent_s
+            batch[B.STEP + l] += spent + spent_s
 
     return shears
 
@@ -180,7 +176,7 @@ def make_contact_shear(kind: ForcesKind) -> Any:
     """Build the piece between two kicks: contact_shear(b, b_0, t, reach, work, held)."""
     plane, rotation, walled, mixed = bool(kind.plane_case), kind.rotation, bool(kind.walls), bool(kind.mixed)
     short = plane and not kind.rolling and not kind.events
-    filter_pairs, gather = make_filter_pairs(walled), make_gather(M.OF_MAPS, short, walled, begins=False)
+    filter_pairs, gather = make_filter_pairs(walled), make_gather(M.OF_KICKS, short, walled, begins=False)
     shears, impulses, events = _make_shears(plane, mixed), _make_impulses(plane), make_events(plane, mixed)
     events_kept, records_between = bool(kind.events), make_records_between(plane)
     pack, put_back = make_pack(bool(kind.rebound)), make_put_back(short)

@@ -12,15 +12,15 @@ from typing import Any
 from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import SHORT
+from ryusa.engine.cpu.lane_kinematics import kinematics_of_lane
 from ryusa.engine.cpu.wall_shares import share_of
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.contact_step import contact_force, contact_kinematics
+from ryusa.laws.contact_step import contact_force
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total, unloading_rescales
-from ryusa.laws.geometry import wrap
 from ryusa.laws.hertz import hertz_energy
 from ryusa.laws.hertz_step import (
     dashpot_hertz,
@@ -38,28 +38,7 @@ def _make_kinematics(plane: bool) -> Any:
         """Geometry and velocities of every contact, and its normal force before the limit."""
         dt, l_x, l_y = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y]
         for l in range(known_lanes(m, B.LANES)):
-            d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
-            u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
-            i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
-            j_x, j_y, j_z = batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2]
-            if plane:  # spin has one component; the zeros beside it are read to read all four of a group
-                i_y, j_y = i_x + i_y + i_z, j_x + j_y + j_z
-            else:
-                d_y, u_y = wrap(batch[B.SEPARATION + 4 * l + 1], l_y), batch[B.RELATIVE_VELOCITY + 4 * l + 1]
-            r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
-            n_x, n_y, n_z, overlap, a_i, a_j, closing, s_x, s_y, s_z, twist = contact_kinematics(
-                plane, d_x, d_y, d_z, batch[B.SEPARATION + 4 * l + 3], r_i, u_x, u_y, u_z,
-                i_x, i_y, i_z, j_x, j_y, j_z, dt,
-            )  # fmt: skip
-            if not plane:
-                batch[B.TWIST + l] = twist
-                batch[B.NORMAL + B.PITCH + l] = n_y
-                batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l] = s_y, s_z
-            batch[B.NORMAL + l], batch[B.NORMAL + 2 * B.PITCH + l] = n_x, n_z
-            batch[B.SLIP + l] = s_x
-            batch[B.OVERLAP + l], batch[B.CLOSING + l] = overlap, closing
-            batch[B.ARM_I + l], batch[B.ARM_J + l] = a_i, a_j
-            batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
+            overlap, closing = kinematics_of_lane(l, plane, most, dt, l_x, l_y, batch)
             e_n, root = spring_hertz(overlap, batch[B.K_N + l])
             fourth = math.sqrt(root)
             eta = dashpot_hertz(fourth, batch[B.RELATIVE_VELOCITY + 4 * l + 3], batch[B.K_S + l], dt)

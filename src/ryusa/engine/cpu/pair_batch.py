@@ -18,6 +18,7 @@ from ryusa.compiled.lanes import known_lanes
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import dashpot_row, make_begin_row, make_lane_to_row, make_row_to_lane
 from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation, set_separation_of_any
+from ryusa.engine.cpu.lane_kinematics import kinematics_of_lane
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -27,14 +28,11 @@ from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import (
     contact_force,
-    contact_kinematics,
     normal_step,
     normal_work_of_last_force,
     tangential_step,
 )
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
-from ryusa.laws.geometry import overlap as overlap_of
-from ryusa.laws.geometry import wrap
 
 
 @cache
@@ -72,7 +70,7 @@ def make_gather(springs: int, short: bool, walled: bool, begins: bool = True) ->
 
     It empties the rows of pairs that did not touch and gives them their springs, if it `begins` contacts.
     """
-    hertz, maps, row_to_lane = springs == M.HERTZ, springs == M.OF_MAPS, make_row_to_lane(short)
+    hertz, kicks, row_to_lane = springs == M.HERTZ, springs == M.OF_KICKS, make_row_to_lane(short)
     begin_row = make_begin_row(springs)
 
     @inner(fastmath=FAST)
@@ -123,8 +121,9 @@ def make_gather(springs: int, short: bool, walled: bool, begins: bool = True) ->
             batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
             if springs:
                 batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
-            if maps:
+            if kicks:
                 batch[B.STORED + l], batch[B.MASS + l] = eta[e, M.STORED], eta[e, M.MASS]
+                batch[B.MASS_S + l] = eta[e, M.MASS_S]
             if hertz:  # a row of its own, since a loop reads all four of a group or none
                 batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
         if walled:
@@ -139,25 +138,16 @@ def make_gather(springs: int, short: bool, walled: bool, begins: bool = True) ->
             batch[B.K_N + l] = batch[B.K_S + l] = 1.0
             if hertz:
                 batch[B.OVERLAP_OLD + l] = 0.0
-            if maps:
-                batch[B.STORED + l] = batch[B.MASS + l] = 1.0
+            if kicks:
+                batch[B.STORED + l] = batch[B.MASS + l] = batch[B.MASS_S + l] = 1.0
             if table is not None:
                 batch[B.MU + l] = batch[B.MINDLIN + l] = 1.0
-                if maps:
+                if kicks:
                     batch[B.K_LAW + l] = 1.0
             batch[B.SEPARATION + 4 * l] = B.FAR
         return whole
 
     return gather
-
-
-@inner(fastmath=FAST)
-def overlap_of_lane(l: int, c: Any, batch: Any) -> float:
-    """Overlap of the pair on lane l [m]."""
-    d_x, d_z = wrap(batch[B.SEPARATION + 4 * l], c[P.PERIOD_X]), batch[B.SEPARATION + 4 * l + 2]
-    d_y = wrap(batch[B.SEPARATION + 4 * l + 1], c[P.PERIOD_Y])
-    distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
-    return overlap_of(batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3], distance)
 
 
 def _make_kinematics(plane: bool) -> Any:
@@ -166,28 +156,7 @@ def _make_kinematics(plane: bool) -> Any:
         """Geometry and velocities of every contact, and its normal force before the limit."""
         dt, k_n, l_x, l_y = c[P.DT], c[P.K_N], c[P.PERIOD_X], c[P.PERIOD_Y]
         for l in range(known_lanes(m, B.LANES)):
-            d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
-            u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
-            i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
-            j_x, j_y, j_z = batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2]
-            if plane:  # spin has one component; the zeros beside it are read to read all four of a group
-                i_y, j_y = i_x + i_y + i_z, j_x + j_y + j_z
-            else:
-                d_y, u_y = wrap(batch[B.SEPARATION + 4 * l + 1], l_y), batch[B.RELATIVE_VELOCITY + 4 * l + 1]
-            r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
-            n_x, n_y, n_z, overlap, a_i, a_j, closing, s_x, s_y, s_z, twist = contact_kinematics(
-                plane, d_x, d_y, d_z, batch[B.SEPARATION + 4 * l + 3], r_i, u_x, u_y, u_z,
-                i_x, i_y, i_z, j_x, j_y, j_z, dt,
-            )  # fmt: skip
-            if not plane:
-                batch[B.TWIST + l] = twist
-                batch[B.NORMAL + B.PITCH + l] = n_y
-                batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l] = s_y, s_z
-            batch[B.NORMAL + l], batch[B.NORMAL + 2 * B.PITCH + l] = n_x, n_z
-            batch[B.SLIP + l] = s_x
-            batch[B.OVERLAP + l], batch[B.CLOSING + l] = overlap, closing
-            batch[B.ARM_I + l], batch[B.ARM_J + l] = a_i, a_j
-            batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
+            overlap, closing = kinematics_of_lane(l, plane, most, dt, l_x, l_y, batch)
             batch[B.RAW + l] = normal_force(overlap, closing, k_n, batch[B.RELATIVE_VELOCITY + 4 * l + 3])
 
     return kinematics

@@ -10,12 +10,19 @@ from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays
-from ryusa.engine.cpu.pair_batch import overlap_of_lane
+from ryusa.engine.cpu.lane_kinematics import overlap_of_lane
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared import record_fields as R
-from ryusa.engine.shared.contact_instants import APART, MAY_PART, TOUCHES, is_held
-from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
+from ryusa.engine.shared.contact_instants import APART, MAY_PART, TOUCHES, dashes, is_held
+from ryusa.engine.shared.contact_records import (
+    add_impulses,
+    begin_record,
+    end_record,
+    is_before_its_touch,
+    keep_record,
+    touch_as_they_pass,
+)
 from ryusa.engine.shared.dashpots import dashpot_immersed, dashpot_immersed_hertz
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.materials import material_of
@@ -84,8 +91,6 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
             batch[B.CLOSING + l],
             grains.n_touching,
         )
-        if exact and was and not touching and record[R.OVERLAP_MAX] == 0.0:
-            record[R.PARTNER] = -1.0  # it would have touched, but others moved the grains
         if touching and not was:
             record[:] = 0.0
             begin_record(
@@ -95,9 +100,12 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
         tension, f_last, t_end = choice.tension, record[R.T_PART], record[R.T_END]
         f_n = batch[B.SPRING + 4 * l + 3]
         if exact:  # the end of the force is known, but where others pushed the grains apart
-            tension, f_last = 0, 1.0 if is_held(batch[B.WAS_TOUCHING + l]) else 0.0
-            f_n = batch[B.KICK + l]
-            closing -= 0.0 if touching else f_n * dt / batch[B.MASS + l]  # half of a dashpot may still act
+            tension, f_last, f_n = 0, 1.0 if dashes(batch[B.WAS_TOUCHING + l]) else 0.0, batch[B.KICK + l]
+            if was and not touching:  # half of a dashpot may still act
+                add_impulses(record, f_n, force, dt)
+                closing -= f_n * dt / batch[B.MASS + l]
+                if is_before_its_touch(record, batch[B.MASS + l]):
+                    record[R.PARTNER] = -1.0
         if touching:
             keep_record(
                 record, t, dt, overlap, f_n, batch[B.RAW + l], force, batch[B.SLIDES + l] > 0.0,
@@ -139,11 +147,13 @@ def make_records_between(plane: bool) -> Any:
                     plane, choice.events, record, t, dt, batch[B.OVERLAP + l], batch[B.CLOSING + l], slip,
                     normal, i, j, n, grains, c[P.PERIOD_X], c[P.PERIOD_Y],
                 )  # fmt: skip
+                touch_as_they_pass(
+                    record, t, dt, -batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.BEND + l]
+                )
             if record[R.PARTNER] < 0.0:
                 continue
-            record[R.IMPULSE_N] -= batch[B.MASS + l] * batch[B.CHANGE + l]
-            for a in range(3):
-                record[R.IMPULSE + a] += batch[B.FORCE + 4 * l + a] * dt
+            force = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
+            add_impulses(record, -batch[B.MASS + l] * batch[B.CHANGE + l] / dt, force, dt)
             if kind == MAY_PART and when < math.inf:
                 record[R.T_END] = t + when
             if batch[B.SLIDES + l] > 0.0 and when < math.inf:

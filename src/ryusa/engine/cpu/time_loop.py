@@ -21,6 +21,7 @@ from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, p
 from ryusa.engine.cpu.rigid_bodies import make_move_bodies
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.contact_instants import AHEAD, REACH
 from ryusa.engine.shared.kernel import FAST, kernel
 from ryusa.engine.shared.status import (
     FAULT_NONE,
@@ -72,7 +73,7 @@ class PiecesOfStep:
         self.shear = None
         if variant.exact:
             self.shear = Wanted(make_contact_shear, (kind,), (integer, integer, number, number, *lent))
-            wanted += [self.shear, Wanted(make_advance, (moving,), self._moves)]
+            wanted += [self.shear, Wanted(make_advance, (moving,), (integer, integer, integer, lent[1]))]
         self._beside = Beside(wanted)
 
     @cached_property
@@ -92,10 +93,6 @@ class PiecesOfStep:
         """Shear of contacts and motion of grains; None where contacts begin and end at steps."""
         _, _, *between = self._beside.pieces()
         return (between[0], between[1]) if between else (None, None)
-
-
-AHEAD = 1.1  # displacements of the fastest grain in a step by which its shear may move it
-REACH = 2.5  # displacements of the fastest grain in a step within which pairs are looked at that may touch
 
 
 @kernel(nogil=True, fastmath=FAST)
@@ -213,7 +210,7 @@ def run(
                     if not after:
                         call(shear, (b, b_0, t, reach, lent_work, lent))
                     if soon != (after == 1):
-                        call(advance, (block_start[q], block_start[q + 1], begins, last, q, lent_work, lent))
+                        call(advance, (block_start[q], block_start[q + 1], q, lent))
                 else:
                     if not after:
                         call(pieces.forces, (b, b_0, step, t, hdt, last, 0.0, lent_work, lent))

@@ -8,37 +8,18 @@ from ryusa.engine.cuda import step_totals as T
 from ryusa.engine.cuda.device import device, on_device
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.contact_instants import (
-    APART,
-    BACK,
-    BEGAN,
-    FREED,
-    GONE,
-    HELD,
-    SLID,
-    SLIDES,
-    bounding,
-    dashes,
-    is_held,
-    middle_of_pair,
-    pushes,
-)
+from ryusa.engine.shared.contact_instants import APART, HELD, SLID, bounding, is_held, middle_of_pair
+from ryusa.engine.shared.contact_kicks import kick_across, kick_along
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
-from ryusa.laws.collision import effective_mass_tangential
-from ryusa.laws.contact import shear_strength
-from ryusa.laws.contact_step import contact_force, tangential_step
+from ryusa.laws.contact_step import contact_force
 from ryusa.laws.families import Cap, Slip
 from ryusa.model.tally import Term
 
 B_DASH_S, B_SLIDE, B_STEP = int(Term.DASH_S), int(Term.SLIDE), int(Term.STEP)
 
 Vector = tuple[float, float, float]
-_pushes, _dashes, _is_held, _bounding = (
-    on_device(pushes),
-    on_device(dashes),
-    on_device(is_held),
-    on_device(bounding),
-)
+_kick_along, _kick_across = on_device(kick_along), on_device(kick_across)
+_is_held, _bounding = on_device(is_held), on_device(bounding)
 _middle_of_pair = on_device(middle_of_pair)
 
 
@@ -57,52 +38,24 @@ def make_kick(variant: KernelVariant, choice: LawChoice) -> Any:
     ) -> tuple[int, float, float, bool, Vector, Vector]:  # fmt: skip
         """Forces of a pair at its kick; parameters and results as those of `pair.make_contact`."""
         n_x, n_y, n_z = normal
-        s_x, s_y, s_z = slip
         p_x = p_y = p_z = q_x = q_y = q_z = e_old = 0.0
         if was != APART:
             p_x, p_y, p_z = row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2]
             q_x, q_y, q_z = row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2]
             e_old = row[M.F_N] - row[M.DASH_N]
-        k_n, k_s, eta_n, mu, cohesion = eta[M.K_N], eta[M.K_S], eta[M.ETA_N], c[P.MU], c[P.COHESION]
-        pushed, began = _pushes(was, overlap), was in (BEGAN, BACK)
-        dash = eta_n * closing if _dashes(was) else 0.0
-        e_n = k_n * overlap if pushed else 0.0
-        kick = e_n + dash
-        f_n = e_n + 2.0 * dash if pushed else 0.0  # the other half acts after the kick
-        # released and still in touch, be it by others or by round-off: nothing damps it any more
-        held = pushed and not (was == GONE and eta_n > 0.0)
-        now = HELD if held else FREED if overlap > 0.0 else APART
-
-        bound, soft_s = _bounding(f_n, e_n), 1.0 / k_s if k_s > 0.0 else 0.0
-        # of a contact that began the spring is that of this step, and the step before has no share in it
-        way, share_of_work = 0.0 if began else c[P.DT], 0.0 if began else hdt
-        e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, _ = tangential_step(
-            plane_case, total, drop, cap_total, n_x, n_y, n_z, twist, bound, e_n, 1.0 if held else 0.0, s_x,
-            s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, 2.0 * eta[M.ETA_S], cohesion, mu, way,
-            share_of_work,
+        k_n, was_state = eta[M.K_N], float(was)
+        now, kick, e_n, f_n = _kick_along(was_state, overlap, closing, k_n, eta[M.ETA_N])
+        (e_x, e_y, e_z), (b_x, b_y, b_z), h, taken, dashpot_s, sliding, slides = _kick_across(
+            plane_case, total, drop, cap_total, was_state, now == HELD, normal, twist, kick, f_n, e_n, slip,
+            (p_x, p_y, p_z), (q_x, q_y, q_z), eta[M.K_S], eta[M.ETA_S], eta[M.MASS_S], c[P.COHESION],
+            c[P.MU], c[P.DT], hdt,
         )  # fmt: skip
-        # half of the dashpot acts after the kick; of a force at its strength, what the strength is then
-        size = math.fabs(e_x + b_x)
-        if not plane_case:
-            size = math.sqrt((e_x + b_x) ** 2 + (e_y + b_y) ** 2 + (e_z + b_z) ** 2)
-        whole = total and size >= SLIDES * shear_strength(bound if cap_total else e_n, cohesion, mu)
-        slides = whole or share < 1.0
-        of_e = max(kick, 0.0) / bound if whole and cap_total and bound > 0.0 else 1.0
-        later = 0.0 if whole else 0.5
-        f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
-            plane_case, n_x, n_y, n_z, kick, of_e * (e_x + b_x) - later * b_x,
-            of_e * (e_y + b_y) - later * b_y, of_e * (e_z + b_z) - later * b_z,
-        )  # fmt: skip
-        if held and slides:
+        f_x, f_y, f_z, t_x, t_y, t_z = contact_force(plane_case, n_x, n_y, n_z, kick, h[0], h[1], h[2])
+        if now == HELD and slides:
             now = SLID
-
-        stored, taken = e_x * e_x, p_x * p_x
-        if not plane_case:
-            stored, taken = stored + (e_y * e_y + e_z * e_z), taken + (p_y * p_y + p_z * p_z)
-        in_springs = eta[M.STORED] / (k_n * k_n) * (e_n * e_n - e_old * e_old)
-        in_springs += soft_s * (stored - (0.0 if began else taken))
+        taken += eta[M.STORED] / (k_n * k_n) * (e_n * e_n - e_old * e_old)
         # springs held in the first step belong to the start
-        totals[B_STEP] += weight * (dashpot_s + sliding + (0.5 * in_springs if hdt > 0.0 else 0.0))
+        totals[B_STEP] += weight * (dashpot_s + sliding + (0.5 * taken if hdt > 0.0 else 0.0))
         totals[B_DASH_S] += weight * dashpot_s
         totals[B_SLIDE] += weight * sliding
         row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2], row[M.F_N] = e_x, e_y, e_z, f_n
@@ -115,23 +68,23 @@ def make_kick(variant: KernelVariant, choice: LawChoice) -> Any:
 @cache
 def make_middle(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build what one pair does between two kicks, for one variant."""
-    plane_case, rotation, tension = variant.plane_case != 0, variant.rotation != 0, choice.tension != 0
+    plane_case, tension = variant.plane_case != 0, choice.tension != 0
     total, drop = "total" in Slip(choice.slip).marks, "drop" in Slip(choice.slip).marks
     cap_total = "total" in Cap(choice.cap).marks
 
     @device
     def middle(
-        a: int, b: int, weight: float, was: int, c: Any, m: Any, inertia: Any, w: Any, normal: Vector,
-        apart: float, overlap: float, closing: float, u: Vector, slip: Vector, eta: Any, row: Any,
-        totals: Any,
+        weight: float, was: int, c: Any, normal: Vector, apart: float, overlap: float, closing: float,
+        bend: float, u: Vector, slip: Vector, eta: Any, row: Any, totals: Any,
     ) -> tuple[int, float, float, float, float, Vector, Vector]:  # fmt: skip
         """Shear, touch or release of a pair; its row goes on where its contact begins or ends.
 
         Parameters
         ----------
-        a, b, weight, normal, overlap, closing, slip, eta, row : as those of `pair.make_contact`.
+        weight, normal, overlap, closing, slip, eta, row : as those of `pair.make_contact`.
         was : state after the kick.
         apart : distance of the centres; 0 for a plane, at which nothing turns [m].
+        bend : of `bending` [m/s2].
         u : velocity of a relative to b [m/s].
         totals : of the interval after the step (step_totals.py).
 
@@ -148,11 +101,11 @@ def make_middle(variant: KernelVariant, choice: LawChoice) -> Any:
             p_x, p_y, p_z = row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2]
             q_x, q_y, q_z = row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2]
             f_n, e_n = row[M.F_N], row[M.F_N] - row[M.DASH_N]
-        m_t = effective_mass_tangential(m[a], w[a, 3], inertia[a], m[b], w[b, 3], inertia[b], rotation)
         found = _middle_of_pair(
-            float(was), overlap, closing, _bounding(f_n, e_n), m_n, eta[M.ETA_N], eta[M.K_N], eta[M.WAY],
-            eta[M.AFTER], m_t, eta[M.K_S], eta[M.ETA_S], (p_x, p_y, p_z), (p_x + q_x, p_y + q_y, p_z + q_z),
-            slip, tension, (total, drop, cap_total), (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c,
+            float(was), overlap, closing, bend, _bounding(f_n, e_n), m_n, eta[M.ETA_N], eta[M.K_N],
+            eta[M.WAY], eta[M.AFTER], eta[M.MASS_S], eta[M.K_S], eta[M.ETA_S], (p_x, p_y, p_z),
+            (p_x + q_x, p_y + q_y, p_z + q_z), slip, tension, (total, drop, cap_total),
+            (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c,
         )  # fmt: skip
         now, slid, shift = int(found.state), found.slid, found.shift
         spent, let_go = found.spent_n + found.spent_s, 0.0

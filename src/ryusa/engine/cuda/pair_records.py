@@ -12,18 +12,23 @@ from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import record_fields as R
-from ryusa.engine.shared.contact_instants import APART, is_held
-from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
+from ryusa.engine.shared.contact_instants import APART, dashes, is_held
+from ryusa.engine.shared.contact_records import (
+    add_impulses,
+    begin_record,
+    end_record,
+    is_before_its_touch,
+    keep_record,
+    touch_as_they_pass,
+)
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model.contacts import N_EVENT
 
 Vector = tuple[float, float, float]
-_begin_record, _keep_record, _end_record, _is_held = (
-    on_device(begin_record),
-    on_device(keep_record),
-    on_device(end_record),
-    on_device(is_held),
-)
+_begin_record, _keep_record = on_device(begin_record), on_device(keep_record)
+_end_record, _is_before_its_touch = on_device(end_record), on_device(is_before_its_touch)
+_touch_as_they_pass, _add_impulses = on_device(touch_as_they_pass), on_device(add_impulses)
+_is_held, _dashes = on_device(is_held), on_device(dashes)
 
 
 @cache
@@ -55,12 +60,13 @@ def make_record(variant: KernelVariant, choice: LawChoice) -> Any:
             )
         pulls, f_last, t_end = tension, record[R.T_PART], record[R.T_END]
         if exact:  # the end of the force is known, but where others pushed the grains apart
-            pulls, f_last = 0, 1.0 if _is_held(was) else 0.0
+            pulls, f_last = 0, 1.0 if _dashes(float(was)) else 0.0
             f_n, raw = raw, f_n  # impulses are those of the kicks
-            if not touching:
-                closing -= f_n * dt / eta[M.MASS]  # half of a dashpot may still act
-                if was != 0 and record[R.OVERLAP_MAX] == 0.0:
-                    record[R.PARTNER] = -1.0  # it would have touched, but others moved the grains
+            if was != 0 and not touching:  # half of a dashpot may still act
+                _add_impulses(record, f_n, force, dt)
+                closing -= f_n * dt / eta[M.MASS]
+                if _is_before_its_touch(record, eta[M.MASS]):
+                    record[R.PARTNER] = -1.0
         if touching:
             _keep_record(record, t, dt, overlap, f_n, raw, force, slides, others)
             if exact and not _is_held(now):
@@ -88,7 +94,7 @@ def make_record_between(variant: KernelVariant, choice: LawChoice) -> Any:
     @device
     def record_between(
         i: int, j: int, n: int, was: int, when: float, slid: float, t: float, dt: float, overlap: float,
-        closing: float, impulse_n: float, normal: Vector, slip: Vector, impulse: Vector,
+        closing: float, bend: float, f_n: float, normal: Vector, slip: Vector, force: Vector,
         grains: RecordedGrains, l_x: float, l_y: float, record: Any,
     ) -> None:  # fmt: skip
         """Begin the record of a pair that touches, add its impulse, and keep the end of its force.
@@ -96,8 +102,9 @@ def make_record_between(variant: KernelVariant, choice: LawChoice) -> Any:
         Parameters
         ----------
         was : state after the kick.
+        bend : of `bending` [m/s2].
         when, slid : time of touch or release after t, and whether it slid, from the pair.
-        impulse_n, impulse : over the step, normal and on the grain at place i [N s].
+        f_n, force : of its impulses over the step, normal and on the grain at place i [N].
         """
         touches = not _is_held(was)
         if was == APART:
@@ -106,10 +113,9 @@ def make_record_between(variant: KernelVariant, choice: LawChoice) -> Any:
             _begin_record(
                 plane_case, rule, record, t, dt, overlap, closing, slip, normal, i, j, n, grains, l_x, l_y
             )
+            _touch_as_they_pass(record, t, dt, -overlap, closing, bend)
         if record[R.PARTNER] >= 0.0:
-            record[R.IMPULSE_N] += impulse_n
-            for k in range(3):
-                record[R.IMPULSE + k] += impulse[k]
+            _add_impulses(record, f_n, force, dt)
             if when < math.inf:
                 if not touches:
                     record[R.T_END] = t + when

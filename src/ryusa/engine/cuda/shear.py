@@ -24,11 +24,11 @@ from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.cuda.exact_pair import make_middle
 from ryusa.engine.cuda.pair import separation
 from ryusa.engine.cuda.pair_records import make_record_between
-from ryusa.engine.cuda.step import enter_totals, find_fault, reduce_columns
+from ryusa.engine.cuda.step import enter_totals, find_fault, reduce_blocks
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.contact_instants import APART, is_held
+from ryusa.engine.shared.contact_instants import AHEAD, APART, REACH, bending, is_held
 from ryusa.engine.shared.dashpots import springs_immersed
 from ryusa.engine.shared.status import (
     FAULT_NONE,
@@ -42,11 +42,8 @@ from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact_step import contact_kinematics
 from ryusa.model.fluid import SUBMERGED
 
-AHEAD = 1.1  # displacements of the fastest grain in a step by which its shear may move it
-REACH = 2.5  # displacements of the fastest grain in a step within which pairs are looked at that may touch
-
 Vector = tuple[float, float, float]
-_is_held, _springs_immersed = on_device(is_held), on_device(springs_immersed)
+_is_held, _bending, _springs_immersed = on_device(is_held), on_device(bending), on_device(springs_immersed)
 
 
 @cache
@@ -71,14 +68,7 @@ def make_shear(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) ->
             totals[k] = 0.0
         half, dt, l_x, l_y = status[F.CURRENT], c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y]
         t, ahead = c[P.T_ZERO] + status[F.STEP] * dt, REACH * motion[F.FASTEST] * dt
-        x, v, w, m, inertia, ids = (
-            bodies.x[half],
-            bodies.v[half],
-            bodies.w[half],
-            bodies.m,
-            bodies.inertia,
-            bodies.ids,
-        )
+        x, v, w, m, ids = bodies.x[half], bodies.v[half], bodies.w[half], bodies.m, bodies.ids
         start, partners, lives, rows = pairs.start, pairs.partners, pairs.touching, pairs.rows
 
         for i in range(cuda.grid(1), n, cuda.gridsize(1)):
@@ -106,19 +96,20 @@ def make_shear(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) ->
                     plane_case, d_x, d_y, d_z, r_i + r_j, r_i if own else r_j, u_x, u_y, u_z,
                     w[a, 0], w[a, 1], w[a, 2], w[b, 0], w[b, 1], w[b, 2], dt,
                 )  # fmt: skip
-                if was == APART:
-                    if not (closing > 0.0 and overlap + closing * dt > 0.0):
-                        continue
-                    if rebound:
-                        _springs_immersed(k, choice, closing, a, b, c, m, w, pairs.eta)
-                normal, slip = (n_x, n_y, n_z), (q_x, q_y, q_z)
                 distance = 0.0
                 if j < n_solid:
                     distance = d_x * n_x + d_z * n_z
                     if not plane_case:
                         distance += d_y * n_y
+                bend = _bending(u_x * u_x + u_y * u_y + u_z * u_z, closing, distance)
+                if was == APART:
+                    if not (closing > 0.0 and overlap + (closing - 0.5 * bend * dt) * dt > 0.0):
+                        continue
+                    if rebound:
+                        _springs_immersed(k, choice, closing, a, b, c, m, w, pairs.eta)
+                normal, slip = (n_x, n_y, n_z), (q_x, q_y, q_z)
                 now, when, slid, change, moved, (p_x, p_y, p_z), turned = middle(
-                    a, b, 1.0 if own else 0.0, was, c, m, inertia, w, normal, distance, overlap, closing,
+                    1.0 if own else 0.0, was, c, normal, distance, overlap, closing, bend,
                     (u_x, u_y, u_z), slip, pairs.eta[k], rows[k], totals,
                 )  # fmt: skip
                 lives[k] = now
@@ -129,8 +120,8 @@ def make_shear(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) ->
                 s_x, s_y, s_z = s_x + along * n_x, s_y + along * n_y, s_z + along * n_z
                 if events and own and (_is_held(was) or when < math.inf):
                     record_between(
-                        i, j, n, was, when, slid, t, dt, overlap, closing, -pairs.eta[k, M.MASS] * change,
-                        normal, slip, (p_x * dt, p_y * dt, p_z * dt),
+                        i, j, n, was, when, slid, t, dt, overlap, closing, bend,
+                        -pairs.eta[k, M.MASS] * change / dt, normal, slip, (p_x, p_y, p_z),
                         RecordedGrains(x, v, w, ids, bodies.image, bodies.tracked), l_x, l_y,
                         rows[k, record_at:],
                     )  # fmt: skip
@@ -190,6 +181,8 @@ def make_advance(variant: KernelVariant) -> Any:
                 whirl = turn + dt * (1.0 / bodies.inertia[i]) * torque[k]
                 work += torque[k] * (turn + whirl)
             to_x[i, k], to_v[i, k], to_w[i, k] = x[i, k] + way, after, whirl
+            if column:  # what moves along with the grain is taken from the water
+                bodies.impulse[i, k] -= added * (after - before)
             pace = way / dt
             speed_2, pace_2, spin_2 = speed_2 + after * after, pace_2 + pace * pace, spin_2 + whirl * whirl
         totals[T.OF_STEP] += 0.5 * dt * work - bodies.m_weight[i] * raised
@@ -215,13 +208,7 @@ def make_close_kicks(shape: LaunchShape) -> Any:
         me = cuda.threadIdx.x
         if status[F.STOP] != STOP_DONE or status[F.KICKED] != 0:
             return
-        for task in range(me, T.N_COLUMN * segments, closers):
-            part = task // T.N_COLUMN
-            reduce_columns(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
-        cuda.syncthreads()
-        for column in range(me, T.N_COLUMN, closers):
-            reduce_columns(column, 0, 0, segments, 1, shared_sums, shared_sums)
-        cuda.syncthreads()
+        reduce_blocks(closers, segments, n_block, partial, shared_sums)
         if me == 0:
             enter_totals(shared_sums, status, terms[0], stats[0])
             find_fault(room, c, shared_sums, status, stats[0])

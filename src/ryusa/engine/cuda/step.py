@@ -109,14 +109,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
         t, hdt = c[P.T_ZERO] + at * dt, 0.0 if first else 0.5 * dt
         film_reach = c[P.FILM_REACH] if film else 0.0
-        x, v, w, m, inertia, ids = (
-            bodies.x[half],
-            bodies.v[half],
-            bodies.w[half],
-            bodies.m,
-            bodies.inertia,
-            bodies.ids,
-        )
+        x, v, w = bodies.x[half], bodies.v[half], bodies.w[half]
+        m, inertia, ids = bodies.m, bodies.inertia, bodies.ids
         n_touching = bodies.n_touching[half]
         start, partners, lives, rows = pairs.start, pairs.partners, pairs.touching, pairs.rows
 
@@ -294,13 +288,7 @@ def make_close(shape: LaunchShape) -> Any:
         me = cuda.threadIdx.x
         if status[F.STOP] != STOP_DONE:
             return
-        for task in range(me, T.N_COLUMN * segments, closers):
-            part = task // T.N_COLUMN
-            reduce_columns(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
-        cuda.syncthreads()
-        for column in range(me, T.N_COLUMN, closers):
-            reduce_columns(column, 0, 0, segments, 1, shared_sums, shared_sums)
-        cuda.syncthreads()
+        reduce_blocks(closers, segments, n_block, partial, shared_sums)
         if me == 0:
             enter_totals(shared_sums, status, terms[0], stats[0])
             find_fault(room, c, shared_sums, status, stats[0])
@@ -310,7 +298,20 @@ def make_close(shape: LaunchShape) -> Any:
 
 
 @device
-def reduce_columns(
+def reduce_blocks(closers: int, segments: int, n_block: int, partial: Any, shared_sums: Any) -> None:
+    """Add up the columns of all blocks into the first row of `shared_sums`, by all threads of a block."""
+    me = cuda.threadIdx.x
+    for task in range(me, T.N_COLUMN * segments, closers):
+        part = task // T.N_COLUMN
+        _reduce_column(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
+    cuda.syncthreads()
+    for column in range(me, T.N_COLUMN, closers):
+        _reduce_column(column, 0, 0, segments, 1, shared_sums, shared_sums)
+    cuda.syncthreads()
+
+
+@device
+def _reduce_column(
     column: int, to: int, begin: int, end: int, every: int, rows: Any, shared_sums: Any
 ) -> None:
     """Add up one column over some rows, or find its extreme; the pair of the largest overlap goes along."""

@@ -278,7 +278,7 @@ def set_springs_in_touch(
             )
             if immersed:
                 pairs.eta[k, M.ETA_N] = eta_n
-                if kind == M.OF_MAPS:
+                if kind == M.OF_KICKS:
                     _normal_kicks(k, c[P.K_N], pairs.eta[k, M.MASS], c[P.DT], pairs.eta)
 
 

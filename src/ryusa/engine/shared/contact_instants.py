@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.laws.contact import shear_strength
-from ryusa.laws.contact_map import (
+from ryusa.laws.kick_and_shear import (
     decay_of_kick,
     kick_and_shear,
     part_in_step,
@@ -33,6 +33,10 @@ BACK = 3  # its force came back since the last kick: its spring is that of the n
 BEGAN = 4  # touched since the last kick: likewise
 FREED = 5  # without force, until the overlap ends or the force comes back
 GONE = 6  # the force and the overlap ended since the last kick
+
+# Displacements of the fastest grain in a step by which the shear of its pairs may move it, and within which
+# pairs are looked at that may touch
+AHEAD, REACH = 1.1, 2.5
 
 # What happens to a pair between two kicks
 NOTHING = 0.0
@@ -71,6 +75,22 @@ def is_held(state: float) -> bool:
 
 
 @inner(fastmath=FAST, forceinline=True)
+def bending(u_square: float, closing: float, distance: float) -> float:
+    """Rate at which the closing speed of two free grains falls as they pass each other [m/s2].
+
+    The second derivative of the distance of two points in uniform motion: (u**2 - v**2)/distance, of a
+    distance of 0 for a grain and a plane, which do not turn as they pass.
+    """
+    return (u_square - closing * closing) / distance if distance > 0.0 else 0.0
+
+
+@inner(fastmath=FAST, forceinline=True)
+def half_dashpot(eta_d: float, m: float, dt: float) -> float:
+    """Energy that half a dashpot of kicks takes, over the square of the velocity before it [kg]."""
+    return 0.5 * eta_d * dt * (2.0 - eta_d * dt / m)
+
+
+@inner(fastmath=FAST, forceinline=True)
 def bounding(f_n: float, e_n: float) -> float:
     """Normal force that bounds the tangential one [N]; of a pair that parts, that of the kick.
 
@@ -102,15 +122,18 @@ def dashes(state: float) -> bool:
 
 @inner(fastmath=FAST, forceinline=True)
 def kind_between(
-    state: float, overlap: float, closing: float, k_n: float, eta: float, way: float, left: float,
-    before: float, tension: bool, dt: float,
+    state: float, overlap: float, closing: float, bend: float, k_n: float, eta: float, way: float,
+    left: float, before: float, tension: bool, dt: float,
 ) -> float:  # fmt: skip
-    """What happens to a pair until the next step; `eta` is no less than its dashpot [N s/m]."""
+    """What happens to a pair until the next step, seen from its kick.
+
+    `eta` is no less than its dashpot [N s/m], `bend` is of `bending` [m/s2].
+    """
     y = overlap + way * closing
     falls = k_n * y + eta * (left * left * closing - before * y) <= 0.0
     ends = (y < 0.0) if tension else ((closing < 0.0) & falls)
     back = k_n * overlap + eta * closing > 0.0
-    meets = (closing > 0.0) & (overlap + closing * dt > 0.0)
+    meets = (closing > 0.0) & (overlap + (closing - 0.5 * bend * dt) * dt > 0.0)
     begins = (back & (overlap > 0.0)) if state == FREED else meets
     held = is_held(state)
     return MAY_PART if held and ends else TOUCHES if (not held) and begins else NOTHING
@@ -251,15 +274,16 @@ def part(
         ),
         (stay * p[0], stay * p[1], stay * p[2]),
         go * spent_n + stay * spent_in_touch(overlap, closing, way, after, before, left, m, k_n),
-        go * spent_s, go * max(slid, 1.0 if slides else 0.0), until if ends else math.inf,
+        go * spent_s + half_dashpot(-dash / dt, m_t, dt) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]),
+        go * max(slid, 1.0 if slides else 0.0), until if ends else math.inf,
     )  # fmt: skip
 
 
 @inner(fastmath=FAST)
 def middle_of_pair(
-    state: float, overlap: float, closing: float, f_n: float, m: float, eta_d: float, k_nd: float, way: float,
-    after: float, m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool,
-    rules: Rules, law: Law, c: Any,
+    state: float, overlap: float, closing: float, bend: float, f_n: float, m: float, eta_d: float,
+    k_nd: float, way: float, after: float, m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector,
+    s: Vector, tension: bool, rules: Rules, law: Law, c: Any,
 ) -> Middle:  # fmt: skip
     """What a pair does between two kicks.
 
@@ -267,6 +291,7 @@ def middle_of_pair(
     ----------
     state : of the pair after the kick.
     overlap, closing : as `contact_kinematics` gives them [m], [m/s], after the kick.
+    bend : as `bending` gives it [m/s2].
     f_n : of `bounding` at the kick [N].
     m, m_t : effective masses in the normal and the tangential direction [kg].
     eta_d, k_nd, way, after : dashpot and spring of its kicks, and its shear, as `memory_rows` has them.
@@ -280,7 +305,9 @@ def middle_of_pair(
     """
     dt, k_n = c[P.DT], law[0]
     left, before = 1.0 - eta_d * dt / m, k_nd * dt / m - after
-    kind = kind_between(state, overlap, closing, k_n, 2.0 * eta_d / left, way, left, before, tension, dt)
+    kind = kind_between(
+        state, overlap, closing, bend, k_n, 2.0 * eta_d / left, way, left, before, tension, dt
+    )
     none = (0.0, 0.0, 0.0)
     if kind == TOUCHES:
         return touch(
@@ -295,7 +322,7 @@ def middle_of_pair(
         spent = spent_in_touch(overlap, closing, way, after, before, left, m, k_n)
         dash, rub = after_kick(state, closing, f_n, eta_d, eta_sd, rules, dt)
         push = dash * s[0] + rub * f_t[0], dash * s[1] + rub * f_t[1], dash * s[2] + rub * f_t[2]
-        return Middle(
-            state, (left - 1.0) * closing, (way - dt * left) * closing, push, p, spent, 0.0, 0.0, math.inf
-        )
+        spent_s = half_dashpot(-dash / dt, m_t, dt) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
+        shift = (way - dt * left) * closing
+        return Middle(state, (left - 1.0) * closing, shift, push, p, spent, spent_s, 0.0, math.inf)
     return Middle(state, 0.0, 0.0, none, none, 0.0, 0.0, 0.0, math.inf)

@@ -1,5 +1,6 @@
 """Records of contacts: opened at first touch, kept while touching, closed at parting."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from ryusa.model.scene import EventRule, Floats
 
 Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)
+ROUND_OFF = 1e-9  # of the momentum along the normal that a contact would turn round
 
 
 @kernel(fastmath=FAST, forceinline=True)
@@ -64,6 +66,38 @@ def begin_record(
 
 
 @kernel(fastmath=FAST, forceinline=True)
+def add_impulses(record: Any, f_n: float, force: Vector, dt: float) -> None:
+    """Add what a normal force, and all of the force on i [N], give in a time [s]."""
+    record[R.IMPULSE_N] += f_n * dt
+    for k in range(3):
+        record[R.IMPULSE + k] += force[k] * dt
+
+
+@kernel(fastmath=FAST, forceinline=True)
+def touch_as_they_pass(record: Any, t: float, dt: float, gap: float, closing: float, bend: float) -> None:
+    """Set moment and closing speed of a touch ahead, where free grains meet on their straight ways.
+
+    Parameters
+    ----------
+    gap, closing : between their surfaces at t [m], and the speed at which it closes then [m/s].
+    bend : of `contact_instants.bending` [m/s2].
+    """
+    at_touch = math.sqrt(max(closing * closing - 2.0 * bend * gap, 0.0))
+    record[R.T_BEGIN] = t + min(2.0 * gap / (closing + at_touch), dt)
+    record[R.CLOSING_BEGIN] = at_touch
+
+
+@kernel(fastmath=FAST, forceinline=True)
+def is_before_its_touch(record: Any, m: float) -> bool:
+    """Whether round-off alone put the touch of a record before a step: it has no overlap and no impulse.
+
+    The touch comes in the next step, with a record of its own; `m` is the effective mass [kg].
+    """
+    least = ROUND_OFF * m * record[R.CLOSING_BEGIN]
+    return record[R.OVERLAP_MAX] == 0.0 and abs(record[R.IMPULSE_N]) <= least
+
+
+@kernel(fastmath=FAST, forceinline=True)
 def keep_record(
     record: Any,
     t: float,
@@ -79,9 +113,7 @@ def keep_record(
     if record[R.PARTNER] < 0.0:
         return
     record[R.OVERLAP_MAX] = max(record[R.OVERLAP_MAX], overlap)
-    record[R.IMPULSE_N] += f_n * dt
-    for k in range(3):
-        record[R.IMPULSE + k] += force[k] * dt
+    add_impulses(record, f_n, force, dt)
     if sliding and f_n != 0.0:
         record[R.T_SLIDE] += dt
     if others:
@@ -135,7 +167,8 @@ def end_record(
 def closed_records(state: State, places: np.ndarray) -> np.ndarray:
     """Open records of contacts whose partner is taken away, closed now; values at parting stay nan."""
     rows = state.contacts.event[places].copy()
-    rows = rows[(rows[:, R.PARTNER] >= 0.0) & (rows[:, R.OVERLAP_MAX] > 0.0)]
+    gave = (rows[:, R.OVERLAP_MAX] > 0.0) | (rows[:, R.IMPULSE_N] != 0.0)
+    rows = rows[(rows[:, R.PARTNER] >= 0.0) & gave]
     rows[:, R.T_END] = rows[:, R.T_PART] = state.t
     rows[:, R.CLOSING_END], rows[:, R.ALONE] = np.nan, 0.0
     rows[:, R.SLIP_END : R.SLIP_END + 3] = np.nan

@@ -9,10 +9,10 @@ from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_for_restitution
 from ryusa.laws.contact import damping, damping_in_steps
-from ryusa.laws.contact_map import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.dispatch import wet_restitution
 from ryusa.laws.hertz import hertz_damping, hertz_stiffness, mindlin_damping
 from ryusa.laws.immersed import stokes_number
+from ryusa.laws.kick_and_shear import dashpot_of_kick, springs_of_kicks
 from ryusa.laws.rolling import reduced_radius
 
 
@@ -45,7 +45,7 @@ def kicks_of_pair(
     m_n = effective_mass(m[i], m[j])
     eta_n = c[P.ETA_N] + damping(c[P.ZETA_N], c[P.K_N], m_n)
     eta_s = dashpot_of_kick(c[P.ETA_S] + damping(c[P.ZETA_S], c[P.K_S], m_t), m_t, c[P.DT])
-    out[at, M.ETA_N], out[at, M.ETA_S] = dashpot_of_kick(eta_n, m_n, c[P.DT]), eta_s
+    out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.MASS_S] = dashpot_of_kick(eta_n, m_n, c[P.DT]), eta_s, m_t
     normal_kicks(at, c[P.K_N], m_n, c[P.DT], out)
     _, _, _, _, out[at, M.K_S] = springs_of_kicks(c[P.K_S], eta_s, m_t, c[P.DT])
 
@@ -71,7 +71,7 @@ def set_springs(
     at: int, i: int, j: int, rotation: int, kind: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
 ) -> None:
     """Fill row `at` of `out` with the dashpots, and those of a kind with the stiffnesses, of pair i, j."""
-    if kind == M.OF_MAPS:
+    if kind == M.OF_KICKS:
         kicks_of_pair(at, i, j, rotation, c, m, x, inertia, out)
     elif kind == M.HERTZ:
         out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(
@@ -84,14 +84,14 @@ def set_springs(
 @cache
 def make_set_springs(kind: int) -> Any:
     """Build set_springs(at, i, j, rotation, c, m, x, inertia, out) of one kind alone."""
-    of_maps, of_spheres = kind == M.OF_MAPS, kind == M.HERTZ
+    of_kicks, of_spheres = kind == M.OF_KICKS, kind == M.HERTZ
 
     @inner(fastmath=FAST)
     def set_springs_of_kind(
         at: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
     ) -> None:
         """Fill row `at` of `out` with the dashpots and stiffnesses of pair i, j."""
-        if of_maps:
+        if of_kicks:
             kicks_of_pair(at, i, j, rotation, c, m, x, inertia, out)
         elif of_spheres:
             out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(

@@ -15,14 +15,14 @@ END_ROLLING = 14
 WIDTH, WIDTH_ROLLING = 8, 16  # doubles of a row without and with rolling friction: whole cache lines
 
 # Dashpots [N s/m] and stiffnesses [N/m] of a pair, kept beside its row. With exact timing those of its kicks
-# (`contact_map.springs_of_kicks`; the tangential one by step), then `way` [s], `after` [1/s] and `stored`
-# [N/m] of them in the normal direction, and the effective mass [kg].
+# (`kick_and_shear.springs_of_kicks`; the tangential one by step), then `way` [s], `after` [1/s] and `stored`
+# [N/m] of them in the normal direction, and the effective masses [kg].
 ETA_N, ETA_S, K_N, K_S = 0, 1, 2, 3
 N_SPRING = 4
-WAY, AFTER, STORED, MASS = 4, 5, 6, 7
-N_SPRING_OF_MAPS = 8
+WAY, AFTER, STORED, MASS, MASS_S = 4, 5, 6, 7, 8
+N_SPRING_OF_KICKS = 9
 # Of elastic spheres in their places: dashpots over x**0.25 [N s/m**1.25], stiffness K [N/m**1.5], 1/m [1/kg].
 K_HERTZ, PER_MASS = K_N, K_S
 
 # Kinds of springs (`dashpots.set_springs`).
-LINEAR, OF_MAPS, HERTZ = 0, 1, 2
+LINEAR, OF_KICKS, HERTZ = 0, 1, 2

@@ -38,12 +38,12 @@ class KernelVariant(NamedTuple):
     @property
     def springs(self) -> int:
         """Dashpots and stiffnesses kept for each pair."""
-        return (M.K_N, M.N_SPRING_OF_MAPS, M.N_SPRING)[self.kind]
+        return (M.K_N, M.N_SPRING_OF_KICKS, M.N_SPRING)[self.kind]
 
     @property
     def kind(self) -> int:
         """Kind of springs (memory_rows.py)."""
-        return M.OF_MAPS * self.exact + M.HERTZ * self.hertz
+        return M.OF_KICKS * self.exact + M.HERTZ * self.hertz
 
     @property
     def event_column(self) -> int:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from ryusa.laws import collision
 from ryusa.laws.contact import damping
-from ryusa.laws.contact_map import (
+from ryusa.laws.kick_and_shear import (
     dashpot_of_kick,
     decay_of_kick,
     decay_rate,
