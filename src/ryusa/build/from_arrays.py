@@ -21,7 +21,7 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.traffic import before_feeding, moving_with, steps_between
 from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, with_room, with_walls
-from ryusa.casefile.time import STEPS_OF_HERTZ, STEPS_PER_CONTACT
+from ryusa.casefile.time import steps_of_law
 from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.laws.families import Cap, ContactForce, ContactTiming, Slip
@@ -90,7 +90,8 @@ def scene(
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
     plane_case : motion in x-z only; grains interact only if their y is exactly equal (a lane).
     period : periods in x and y [m]; inf where open, as y must be in a plane scene.
-    dt : time step [s]; by default the shortest contact over `steps_per_contact`: 10 if exact, else 50.
+    dt : time step [s]; by default the shortest contact over `steps_per_contact`, 10 of them if exact
+        (16 where the restitution is 1), else 50.
 
     Returns
     -------
@@ -235,8 +236,8 @@ def _step(
     """Time step [s]: the shortest contact that can occur over its number of steps."""
     m, m_added, _, _ = masses(d, density, math.pi / 6, water)
     heavy, alone = m + m_added, len(d) == 1
-    elastic = contact.force == ContactForce.HERTZ_MINDLIN
-    default = STEPS_OF_HERTZ if elastic else STEPS_PER_CONTACT[ContactTiming(contact.timing)]
+    hertz, lossless = contact.force == ContactForce.HERTZ_MINDLIN, contact.e_n == 1.0
+    default = steps_of_law(hertz, ContactTiming(contact.timing), lossless)
     r = (0.5 if alone else 0.25) * float(np.min(d))  # alone on a wall
     if materials is None:
         shortest = _shortest(contact, float(np.min(heavy)) / (1.0 if alone else 2.0), r)

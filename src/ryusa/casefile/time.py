@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 RIVALS = (("steps_per_contact", "step"),)
 STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
+STEPS_LOSSLESS = 16.0  # with exact timing at restitution 1, where nothing takes what steps give (design/0014)
 STEPS_OF_HERTZ = (
     25.0  # per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018)
 )
@@ -35,8 +36,8 @@ class TimeSection(Section):
 
     steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
     """Number of steps in the shortest contact that can occur. When no step is given, 10 with contact.timing
-    "exact", 50 with "at steps", and 25 of elastic spheres, or more where a tangential oscillation or a film
-    of water needs them."""
+    "exact" (16 where the restitution is 1), 50 with "at steps", and 25 of elastic spheres, or more where a
+    tangential oscillation or a film of water needs them."""
     step: Duration | None = None
     """Time step dt, instead of steps_per_contact."""
 
@@ -81,7 +82,14 @@ def _exact(case: "Case") -> bool:
 
 def steps_by_default(case: "Case") -> float:
     """Steps in the shortest contact when the case gives no step, as far as contacts decide."""
-    return STEPS_OF_HERTZ if is_hertz(case) else STEPS_PER_CONTACT[timing(case)]
+    return steps_of_law(is_hertz(case), timing(case), case.contact.restitution == 1.0)
+
+
+def steps_of_law(hertz: bool, when: ContactTiming, lossless: bool) -> float:
+    """Steps in the shortest contact when none are given, of elastic spheres or lossless springs."""
+    if hertz:
+        return STEPS_OF_HERTZ
+    return STEPS_LOSSLESS if lossless and when == ContactTiming.EXACT else STEPS_PER_CONTACT[when]
 
 
 def _unstable(case: "Case", derived: "Derived", key: str) -> str:
