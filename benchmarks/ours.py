@@ -70,7 +70,13 @@ def scene_of(job: dict[str, Any], load: Workload, folder: Path) -> tuple[Scene, 
     grains = Grains.load(job["grains"])
     if not load.column:
         return free_scene(
-            grains, job["slip"], load.slope, plane=load.plane, dt=job["dt"], timing=job["timing"]
+            grains,
+            job["slip"],
+            load.slope,
+            plane=load.plane,
+            dt=job["dt"],
+            timing=job["timing"],
+            gravity=load.gravity,
         )
     rows = [
         np.hstack([grains.x, grains.d[:, None], grains.v, grains.omega, np.zeros((len(grains.x), 1))]),

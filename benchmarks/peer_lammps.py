@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import workloads
 from peer import Job, keep, threads_of_one
-from workloads import DROP, GRAVITY, TOTAL, Grains, Workload
+from workloads import DROP, TOTAL, Grains, Workload
 
 SKINS = {"W1": (0.1, 0.2, 0.3), "W2": (0.025, 0.05, 0.1), "W3": (0.1, 0.2, 0.3)}
 _COLUMNS = "id x y z vx vy vz omegax omegay omegaz"
@@ -153,7 +153,7 @@ pair_style gran/hooke/history {workloads.K_N} {workloads.K_S} {dashpot(workloads
 pair_coeff * *
 timestep {job.dt:.17g}
 fix move free nve/sphere
-fix weight free gravity {GRAVITY} vector {down[0]:.17g} {down[1]:.17g} {down[2]:.17g}
+fix weight free gravity {job.load.gravity} vector {down[0]:.17g} {down[1]:.17g} {down[2]:.17g}
 {"fix flat all enforce2d" if plane else ""}
 {even if plane and job.threads > 1 else ""}compute spin free erotate/sphere
 thermo_style custom step ke c_spin
@@ -229,7 +229,7 @@ neigh_modify delay 0 every 1 check yes exclude group bed bed
 pair_coeff * *
 timestep {job.dt:.17g}
 fix move free nve/sphere
-fix weight free gravity {GRAVITY} vector {np.sin(slope):.17g} 0 {-np.cos(slope):.17g}
+fix weight free gravity {job.load.gravity} vector {np.sin(slope):.17g} 0 {-np.cos(slope):.17g}
 compute spin free erotate/sphere
 thermo_style custom step ke c_spin
 thermo {job.frame}

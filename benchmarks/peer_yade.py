@@ -35,7 +35,7 @@ class Yade:
     def command(self, job: Job, folder: Path) -> tuple[list[str], dict[str, str]]:
         law = {
             "k_n": workloads.K_N, "k_s": workloads.K_S, "eta_n": workloads.ETA_N, "eta_s": workloads.ETA_S,
-            "mu": workloads.MU, "d": workloads.D, "density": workloads.DENSITY, "gravity": workloads.GRAVITY,
+            "mu": workloads.MU, "d": workloads.D, "density": workloads.DENSITY, "gravity": job.load.gravity,
         }  # fmt: skip
         whole = job.plain() | {"law": law, "slope": job.load.slope, "plane": job.load.plane}
         (folder / "job.json").write_text(json.dumps(whole))

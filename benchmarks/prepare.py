@@ -152,7 +152,14 @@ def _kept(scene: Any, state: State, without: str | None = None) -> Grains:
 
 
 def free_scene(
-    grains: Grains, slip: str, slope: float, *, plane: bool, dt: float = DT, timing: str = "at steps"
+    grains: Grains,
+    slip: str,
+    slope: float,
+    *,
+    plane: bool,
+    dt: float = DT,
+    timing: str = "at steps",
+    gravity: float = workloads.GRAVITY,
 ) -> tuple[Any, State]:
     """Scene and first state of given grains, by the front door for scripts."""
     from ryusa.build import scene
@@ -168,7 +175,7 @@ def free_scene(
     )  # fmt: skip
     return scene(
         grains.x, grains.d, density=workloads.DENSITY, v=grains.v, omega=grains.omega,
-        x_fixed=grains.x_fixed, d_fixed=grains.d_fixed, contact=law, gravity=workloads.GRAVITY, slope=slope,
+        x_fixed=grains.x_fixed, d_fixed=grains.d_fixed, contact=law, gravity=gravity, slope=slope,
         plane_case=plane, period=grains.period, dt=dt, events=EventRule.NONE, allow_overlap=True,
     )  # fmt: skip
 

@@ -51,6 +51,11 @@ class Workload:
         return "-".join(part for part in (self.name, self.size, kind, "water" if self.column else "") if part)
 
     @property
+    def gravity(self) -> float:
+        """g [m/s2]; a gas (bulk.py) has none."""
+        return 0.0 if self.name == "gas" else GRAVITY
+
+    @property
     def slope(self) -> float:
         return 0.0 if self.name != "W1" else WET_SLOPE if self.column else float(SLOPE)
 
