@@ -57,6 +57,13 @@ def test_roots_are_those_of_the_known_table(d, schiller, sphere, sand):
 
 
 @pytest.mark.parametrize(
+    ("d", "speed"), [(0.25e-3, 0.0325), (0.5e-3, 0.0763), (1e-3, 0.1535), (2e-3, 0.2747)]
+)
+def test_the_fit_to_measured_spheres_gives_the_speeds_quoted_for_quartz(d, speed):
+    assert terminal_velocity.gibbs(d, 2650.0, *terminal_velocity.WATER_20) == pytest.approx(speed, abs=6e-5)
+
+
+@pytest.mark.parametrize(
     ("law", "stokes", "newton"),
     [("none", 2.0, 1.5), ("power 3.1", 5.1, 3.05), ("Wen-Yu", 4.65, 2.325), ("Di Felice", 4.7, 2.35)],
 )

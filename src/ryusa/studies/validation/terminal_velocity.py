@@ -14,6 +14,7 @@ from ryusa.laws.families import Drag, Profile
 from ryusa.model import Water
 from ryusa.model.scene import EventRule, Floats
 from ryusa.study import (
+    Band,
     Finding,
     Found,
     Known,
@@ -28,6 +29,9 @@ from ryusa.study import (
 
 TITLE = "One grain falls in still water"
 RATIO, G, NU = 1.65, 9.81, 1.0e-6  # quartz in water: [-], [m/s2], [m2/s]
+DEFAULT = "Schiller-Naumann"  # of spheres
+WATER_20 = (998.2, 1.004e-6)  # water of 20 deg C [kg/m3], [m2/s]
+MEASURED = (0.1e-3, 0.25e-3, 0.5e-3, 1.0e-3, 2.0e-3, 4.0e-3)  # of 0.05 to 5 mm that were measured [m]
 SIZES = (0.1e-3, 0.2e-3, 0.5e-3, 1.0e-3, 2.0e-3, 4.0e-3, 6.0e-3)  # [m]
 FINE = np.geomspace(SIZES[0], SIZES[-1], 60)
 STEPS = 4000  # 20 response times
@@ -49,41 +53,59 @@ FIELD: Mapping[str, Callable[[float], float]] = {
 D, W = Axis("diameter", "mm", log=True), Axis("terminal velocity", "m/s", log=True)
 
 
-def root(c_d: Callable[[float], float], d: float) -> float:
+def root(c_d: Callable[[float], float], d: float, ratio: float = RATIO, nu: float = NU) -> float:
     """Speed at which drag carries the submerged weight [m/s]: C_D(w d/nu) w**2 = (4/3) R g d."""
-    weight, low, high = 4.0 / 3.0 * RATIO * G * d, 1e-9, 20.0
+    weight, low, high = 4.0 / 3.0 * ratio * G * d, 1e-9, 20.0
     for _ in range(100):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if c_d(middle * d / NU) * middle**2 < weight else (low, middle)
+        low, high = (middle, high) if c_d(middle * d / nu) * middle**2 < weight else (low, middle)
     return low
 
 
-def fall(law: str) -> dict[str, Floats]:
-    """Speed after 20 response times from rest [m/s], stepped by the engine, for each of SIZES [m]."""
+def fall(
+    law: str, sizes: Sequence[float] = SIZES, rho_w: float = 1000.0, nu: float = NU
+) -> dict[str, Floats]:
+    """Speed of quartz after 20 response times from rest [m/s], stepped by the engine, by size [m]."""
     kind, c_d = LAWS[law]
-    speeds: list[float] = []
-    for d in SIZES:
-        water = Water(profile=Profile.STILL, drag=kind, c_d=0.4)
-        response = (RATIO + 1.5) / RATIO * root(c_d, d) / G  # added mass included
+    rho_s = 1000.0 * (RATIO + 1.0)
+    ratio, speeds = rho_s / rho_w - 1.0, []
+    for d in sizes:
+        water = Water(profile=Profile.STILL, drag=kind, c_d=0.4, rho_w=rho_w, nu=nu)
+        response = (ratio + 1.5) / ratio * root(c_d, d, ratio, nu) / G  # added mass included
         made = scene(
-            [[0.0, 0.0, 0.0]], d, density=1000.0 * (RATIO + 1.0), water=water, gravity=G,
+            [[0.0, 0.0, 0.0]], d, density=rho_s, water=water, gravity=G,
             dt=20.0 * response / STEPS, plane_case=True, events=EventRule.NONE,
         )  # fmt: skip
         engine = registry.create()
         engine.load(replace(made[0], world_low=(-math.inf,) * 3), made[1])
         engine.advance(STEPS).raise_if_any()
         speeds.append(-float(engine.state().v[0, 2]))
-    return {"d": np.array(SIZES), "w": np.array(speeds)}
+    return {"d": np.array(sizes), "w": np.array(speeds)}
 
 
 def _call(law: str) -> Task:
     return calculation(fall, law=law, seconds=0.2)
 
 
+def gibbs(d: float, rho_s: float, rho_w: float, nu: float) -> float:
+    """Settling velocity of a sphere by the fit of Gibbs, Matthews & Link 1971 to their measurements [m/s].
+
+    Their constants want cgs units.
+    """
+    r, solid, water, eta = 50.0 * d, 1e-3 * rho_s, 1e-3 * rho_w, 1e-3 * rho_w * 1e4 * nu
+    root = 9.0 * eta**2 + 981.0 * r**2 * water * (solid - water) * (0.015476 + 0.19841 * r)
+    return 0.01 * (math.sqrt(root) - 3.0 * eta) / (water * (0.011607 + 0.14881 * r))
+
+
+def _measured() -> Task:
+    rho_w, nu = WATER_20
+    return calculation(fall, law=DEFAULT, sizes=MEASURED, rho_w=rho_w, nu=nu, seconds=0.2)
+
+
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Every drag law; they take no time, so both levels have all."""
+    """Every drag law, and spheres as they were measured; they take no time, so both levels have all."""
     del plan
-    return [_call(law) for law in LAWS]
+    return [*(_call(law) for law in LAWS), _measured()]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -128,4 +150,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "Natural grains are not spheres, and the formulae for them differ from each other by as much; to "
         "choose a drag law for sand is to choose a shape.",
     )  # fmt: skip
-    return [roots, field]
+    seen = found[_measured()]["w"]
+    known = [gibbs(d, 1000.0 * (RATIO + 1.0), *WATER_20) for d in MEASURED]
+    spheres = comparison(
+        "spheres", "Spheres of quartz settle as measured, by the default drag",
+        Source("Gibbs, Matthews & Link 1971: fit to glass spheres of 0.05 to 5 mm in water", Known.QUOTED),
+        D, W, [Curve(DEFAULT, 1e3 * np.array(MEASURED), seen)],
+        [Curve("Gibbs et al.", 1e3 * FINE, np.array([gibbs(d, 2650.0, *WATER_20) for d in FINE]))],
+        [
+            misfit(
+                f"d = {1e3 * d:g} mm: over the measured velocity, less 1", w / one - 1.0, "-",
+                Band(-0.05, 0.05, "-", "standard curves of the drag of spheres differ by as much"),
+            )
+            for d, one, w in zip(MEASURED, known, seen, strict=True)
+        ],
+        {"density": "2650 kg/m3", "water": "20 deg C: 998.2 kg/m3, 1.004e-6 m2/s", "g": "9.81 m/s2"},
+    )  # fmt: skip
+    return [roots, field, spheres]
