@@ -100,23 +100,24 @@ def elastic(steps):
     }  # fmt: skip
 
 
+PITCH, SIDE = 1.02 * 2e-3, 4  # of the lattice in a box [m], and grains along an edge
+
+
+def box_planes():
+    """The six planes of a box."""
+    return [
+        (f"{name} {a}", tuple(at * np.eye(3)[a]), tuple(way * np.eye(3)[a]))
+        for a in range(3)
+        for name, at, way in (("low", 0.0, 1.0), ("high", SIDE * PITCH, -1.0))
+    ]
+
+
 def box(seed, steps):
     """64 elastic grains close to each other in a box of six planes: scene and state."""
-    rng, n = np.random.default_rng(seed), 4
-    pitch = 1.02 * 2e-3
-    x = (
-        np.array([[i, j, k] for i in range(n) for j in range(n) for k in range(n)], float) * pitch
-        + 0.5 * pitch
-    )
+    rng, side = np.random.default_rng(seed), range(SIDE)
+    x = PITCH * (np.array([[i, j, k] for i in side for j in side for k in side], float) + 0.5)
     d, v = 2e-3 * (1.0 - 0.15 * rng.random(len(x))), rng.normal(0.0, 0.1, x.shape)
-    planes = []
-    for a in range(3):
-        normal = np.eye(3)[a]
-        planes += [
-            (f"low {a}", (0.0, 0.0, 0.0), tuple(normal)),
-            (f"high {a}", tuple(n * pitch * normal), tuple(-normal)),
-        ]
-    return scene(x, d, v=v, planes=planes, **elastic(steps))
+    return scene(x, d, v=v, planes=box_planes(), **elastic(steps))
 
 
 def kept(made, n_steps):
