@@ -109,7 +109,8 @@ Window = Annotated[
     str | None,
     typer.Option(
         help=f"{taking('window', MEASURES)}: length of the windows that the record is cut into; default "
-        "1 s for paths, 0.01 s for vibration, 5 sqrt(d/g) for rods."
+        "1 s for paths, 0.01 s for vibration, 5 sqrt(d/g) for rods. For loads the time over which the "
+        "largest is averaged, default that between two frames."
     ),
 ]
 Threshold = Annotated[

@@ -33,7 +33,8 @@ class Average:
     value : mean over all samples of all series.
     error : standard error of the mean, see `standard_error`; nan with fewer than two samples.
     n : number of samples.
-    n_series : number of independent series (starts) they come from.
+    n_series : number of independent series (starts) they come from; 0 of a number that is no mean, such as
+        the largest.
     independent : number of independent samples they are worth, as far as blocks resolve it: at most 128 [-].
     window : begin and end of the record averaged over [s].
     variation : of the record, see `steadiness.compare_quarters` [-]; nan where it is too short.
@@ -78,8 +79,8 @@ class Average:
 
     @property
     def verdict(self) -> str:
-        """What is said of steadiness: "yes", "no" with the drift, "too short", or "-" without samples."""
-        if self.n == 0:
+        """What is said of steadiness: "yes", "no" with the drift, "too short", or "-" of what is no mean."""
+        if self.n_series == 0:
             return "-"
         if self.changes:
             drifts = abs(self.drift) >= DRIFTS * self.error
