@@ -1,9 +1,13 @@
 """Write the reference pages from the code: `make docs`. A test fails when a page is not as written here."""
 
 import json
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from cited import filled, untrue
+from paper_tables import paper_table, with_tables
 
 from ryusa.catalogue import MEASURES, PICTURES
 
@@ -247,51 +251,6 @@ def validation_table() -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def paper_table() -> str:
-    """Every claim of the kept ledger of `ryusa paper`."""
-    from ryusa.studies.osada2004.study import table
-    from ryusa.study.kept import read_ledger
-
-    standard, full = (read_ledger(LEDGERS / name) for name in ("paper.json.xz", "paper-full.json.xz"))
-    return f"{table(standard)}\n\n{robustness_table(standard, full)}\n"
-
-
-def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> str:
-    """In how many settings each claim holds at the standard and at the full level."""
-    from ryusa.studies.osada2004.study import PAPER
-    from ryusa.study.said import count_of
-
-    more = {one["id"]: one for one in full["findings"]}
-    both = [
-        (one, more[one["id"]]) for one in standard["findings"] if one["id"] in more
-    ]  # later claims are not
-    rows = [
-        (one["id"], *(count_of(each["robustness"]) for each in (one, new)))
-        for one, new in both
-        if new["robustness"]["of"]
-    ]
-    unlike = [
-        f"- {one['id']}: {PAPER.said(one)}; at the full level {PAPER.said(new)}"
-        for one, new in both
-        if (one["base_outcome"], one["outcome"]) != (new["base_outcome"], new["outcome"])
-    ]
-    lines = [
-        "## Twice as many settings",
-        "",
-        "The full level has 33 settings instead of 17, with the standard ones among them "
-        f"({sum(full['provenance']['commits_of_runs'].values())} runs of one commit, "
-        "[ledgers/paper-full.json.xz](ledgers/paper-full.json.xz)). The case as it ships is the same. "
-        "Verdicts on it, and what holds only with some levels of a choice, that differ between the levels: "
-        + ("none." if not unlike else ""),
-        "",
-        *([*unlike, ""] if unlike else []),
-        "| claim | holds at the standard level | at the full level |",
-        "|---|---|---|",
-    ]
-    lines += [f"| {name} | {fewer.in_words()} | {many.in_words()} |" for name, fewer, many in rows]
-    return "\n".join(lines)
-
-
 def ledger_summaries() -> dict[Path, str]:
     """One line per number of each kept ledger, for a reader of the repository and for `git diff`."""
     from ryusa.studies.osada2004.study import PAPER
@@ -318,7 +277,7 @@ def pages() -> dict[Path, str]:
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
         HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
-        HERE / "paper.md": _between_markers(HERE / "paper.md", paper_table()),
+        HERE / "paper.md": filled(with_tables(_between_markers(HERE / "paper.md", paper_table()))),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "case.schema.json": json_schema_text(),
         **ledger_summaries(),
@@ -360,11 +319,13 @@ def undocumented() -> list[str]:
 
 
 def main() -> None:
-    """Write every page that is not as it should be."""
-    current = pages()
-    for page in stale():
-        page.write_text(current[page], encoding="utf-8")
-        print(f"wrote {page.relative_to(HERE.parent)}")
+    """Write every page that is not as it should be, and name the sentences that are no longer true."""
+    for page, text in pages().items():
+        if not page.exists() or page.read_text("utf-8") != text:
+            page.write_text(text, encoding="utf-8")
+            print(f"wrote {page.relative_to(HERE.parent)}")
+    if wrong := untrue((HERE / "paper.md").read_text(encoding="utf-8")):
+        sys.exit("\n".join(["docs/paper.md: write these sentences anew, the ledger says otherwise:", *wrong]))
 
 
 if __name__ == "__main__":
