@@ -154,7 +154,7 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-docs: $(HAS_RYUSA) ## write docs/case-file.md, commands.md and the table of validation.md anew
+docs: $(HAS_RYUSA) ## write the reference pages, the tables of ledgers and the numbers in docs/paper.md anew
 	$(BIN)/python docs/generate.py
 
 site: $(HAS_DOCS) ## the documentation as a site: build/site/index.html; every warning is an error

@@ -1,9 +1,13 @@
 """Write the reference pages from the code: `make docs`. A test fails when a page is not as written here."""
 
 import json
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from cited import filled, untrue
+from paper_tables import paper_table, with_tables
 
 from ryusa.catalogue import MEASURES, PICTURES
 
@@ -247,43 +251,6 @@ def validation_table() -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def paper_table() -> str:
-    """Every claim of the kept ledger of `ryusa paper`."""
-    from ryusa.studies.osada2004.study import table
-    from ryusa.study.kept import read_ledger
-
-    standard, full = (read_ledger(LEDGERS / name) for name in ("paper.json.xz", "paper-full.json.xz"))
-    return f"{table(standard)}\n\n{robustness_table(standard, full)}\n"
-
-
-def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> str:
-    """In how many settings each claim holds at the standard and at the full level."""
-    more = {one["id"]: one for one in full["findings"]}
-    lines = [
-        "## Twice as many settings",
-        "",
-        "The full level has 33 settings instead of 17, with the standard ones among them "
-        f"({sum(full['provenance']['commits_of_runs'].values())} runs of one commit, "
-        "[ledgers/paper-full.json.xz](ledgers/paper-full.json.xz)). The base case is the same; settings that "
-        "decide nothing are left out of the shares.",
-        "",
-        "| claim | holds at the standard level | at the full level | verdict, where it is another |",
-        "|---|---|---|---|",
-    ]
-    for one in standard["findings"]:
-        if one["id"] not in more:  # came after the kept full level
-            continue
-        shares = [one["robustness"], more[one["id"]]["robustness"]]
-        if not shares[1]["of"]:
-            continue
-        new, held = more[one["id"]], [f"{share['holds']} of {share['of']}" for share in shares]
-        other = new["verdict"].split(" (")[0] if new["outcome"] != one["outcome"] else ""
-        if other.endswith("only if"):
-            other += f" {new['deciding_factor']['choice']} {', '.join(new['deciding_factor']['holds_at'])}"
-        lines.append(f"| {one['id']} | {' | '.join(held)} | {other} |")
-    return "\n".join(lines)
-
-
 def ledger_summaries() -> dict[Path, str]:
     """One line per number of each kept ledger, for a reader of the repository and for `git diff`."""
     from ryusa.studies.osada2004.study import PAPER
@@ -310,7 +277,7 @@ def pages() -> dict[Path, str]:
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
         HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
-        HERE / "paper.md": _between_markers(HERE / "paper.md", paper_table()),
+        HERE / "paper.md": filled(with_tables(_between_markers(HERE / "paper.md", paper_table()))),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "case.schema.json": json_schema_text(),
         **ledger_summaries(),
@@ -352,11 +319,13 @@ def undocumented() -> list[str]:
 
 
 def main() -> None:
-    """Write every page that is not as it should be."""
-    current = pages()
-    for page in stale():
-        page.write_text(current[page], encoding="utf-8")
-        print(f"wrote {page.relative_to(HERE.parent)}")
+    """Write every page that is not as it should be, and name the sentences that are no longer true."""
+    for page, text in pages().items():
+        if not page.exists() or page.read_text("utf-8") != text:
+            page.write_text(text, encoding="utf-8")
+            print(f"wrote {page.relative_to(HERE.parent)}")
+    if wrong := untrue((HERE / "paper.md").read_text(encoding="utf-8")):
+        sys.exit("\n".join(["docs/paper.md: write these sentences anew, the ledger says otherwise:", *wrong]))
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ def test_a_failed_run_is_reported_at_the_end_and_by_the_exit_code(tmp_path, monk
     assert result.exit_code == 3
     assert "1 run could not be carried out or measured:\n  fig20 [free]: grain 7 lost" in result.stderr
     assert "not judged, see below" in result.stdout
-    assert "1 reproduced; 1 undecided (spread)" in result.stdout
+    assert "1 reproduced as shipped; 1 undecided" in result.stdout
     assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)
 
 

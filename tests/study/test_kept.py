@@ -7,7 +7,7 @@ import pytest
 from ryusa.errors import ResultsError
 from ryusa.study.kept import read_ledger, write_ledger
 
-PLAIN = {"format": 2, "study": "mine", "findings": [{"id": "one", "verdict": "holds"}]}
+PLAIN = {"format": 3, "study": "mine", "findings": [{"id": "one", "verdict": "holds"}]}
 
 
 @pytest.mark.parametrize("name", ["ledger.json", "ledger.json.xz"])
@@ -22,6 +22,49 @@ def test_a_ledger_of_claims_of_format_1_is_read(tmp_path):
     path.write_text(json.dumps({"format": 1, "level": "full", "claims": [claim]}), encoding="utf-8")
     (one,) = read_ledger(path)["findings"]
     assert (one["part"], one["outcome"], one["trials"]) == ("fig04", "holds", [trial])
+    assert (one["robustness"]["holds"], one["robustness"]["of"], one["readings"]) == (1, 1, [])
+
+
+def of_format_2(held, **more):
+    """A ledger of format 2 with one finding; its trials are of two readings."""
+    trials = [
+        {"part": "n", "choices": {"run": str(run), "pair": pair}, "value": 1.0, "outcome": outcome}
+        for run, outcomes in enumerate(held)
+        for pair, outcome in zip(("all", "free"), outcomes, strict=True)
+    ]
+    factor = {"choice": "pair", "holds_at": ["all"], "p": 0.01, "confirmed": 0.02, "halves_of": "seeds"}
+    one = {
+        "id": "one", "outcome": "holds only if", "verdict": "reproduced only if",
+        "base_verdict": "reproduced", "condition": "pair all (9 of 9 settings, none of 4 others)",
+        "trials": trials, "readings": ["pair"],
+        "robustness": {"holds": 4, "of": 4, "undecided": 1, "low": 0.5, "high": 1.0},
+        "deciding_factor": {**factor, "there": [9, 9], "elsewhere": [0, 4]}, "contradiction": "", **more,
+    }  # fmt: skip
+    return {"format": 2, "study": "mine", "findings": [one]}
+
+
+def test_settings_of_a_ledger_of_format_2_are_counted_anew(tmp_path):
+    held = [("undecided", "fails"), *[("holds", "fails")] * 4, ("fails", "undecided")]
+    path = write_ledger(tmp_path / "old.json", of_format_2(held))
+    before = path.read_bytes()
+    (one,) = read_ledger(path)["findings"]
+    assert (one["outcome"], one["base_outcome"], one["condition"]) == ("undecided", "undecided", "")
+    share = one["robustness"]
+    assert (share["holds"], share["of"], share["undecided"]) == (4, 6, 1)
+    assert one["deciding_factor"]["words"] == (
+        "pair all (4 of 6 settings, 1 undecided; none of 6 read otherwise, 1 undecided)"
+    )
+    assert path.read_bytes() == before
+
+
+def test_a_condition_of_format_2_stays_where_its_settings_show_it(tmp_path):
+    path = write_ledger(tmp_path / "old.json", of_format_2([("holds", "fails")] * 5))
+    (one,) = read_ledger(path)["findings"]
+    assert one["outcome"] == "holds only if"
+    assert one["condition"] == "pair all (5 of 5 settings, none of 5 read otherwise)"
+    shown = of_format_2([("holds", "fails")], outcome="excluded by its own equations", deciding_factor=None)
+    (one,) = read_ledger(write_ledger(tmp_path / "new.json", shown))["findings"]
+    assert one["outcome"] == one["base_outcome"] == "excluded by its own equations"
 
 
 def test_a_ledger_of_comparisons_of_format_1_is_read(tmp_path):

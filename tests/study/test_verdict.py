@@ -15,13 +15,20 @@ SETTINGS = [tuple(zip(FACTORS, values, strict=True)) for values in itertools.pro
 
 
 def test_the_interval_of_a_share_is_that_of_wilson():
-    found = robustness([True] * 8 + [False] * 2 + [None] * 3)
-    assert (found.holds, found.of, found.undecided) == (8, 10, 3)
+    found = robustness([True] * 8 + [False] * 2)
+    assert (found.holds, found.of, found.undecided) == (8, 10, 0)
     z, n, p = 1.959963984540054, 10, 0.8
     middle, half = (p + z * z / (2 * n)), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
     assert (found.low, found.high) == pytest.approx(
         ((middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n))
     )
+
+
+def test_an_undecided_setting_may_hold_or_fail():
+    found = robustness([True] * 8 + [False] * 2 + [None] * 3)
+    assert (found.holds, found.fails, found.of, found.undecided) == (8, 2, 13, 3)
+    assert found.low == robustness([True] * 8 + [False] * 5).low
+    assert found.high == robustness([True] * 11 + [False] * 2).high
 
 
 @given(st.lists(st.sampled_from([True, False, None]), max_size=30))

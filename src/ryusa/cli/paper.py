@@ -124,7 +124,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, agai
 def _print(ledger: "Ledger") -> None:
     from rich.markup import escape
 
-    from ryusa.study.entry import ours_in_words
+    from ryusa.study.entry import ours_in_words, plain_entry
 
     if ledger.plan.level == "quick":
         typer.echo(
@@ -136,9 +136,8 @@ def _print(ledger: "Ledger") -> None:
         parts = [] if finding is None else ours_in_words(finding).split("; ")
         more = f" (and {len(parts) - 1} more on the page)" if len(parts) > 1 else ""
         ours = parts[0] + more if parts and parts[0] else "not judged, see below" if entry.problem else "-"
-        condition = "" if finding is None else finding.condition
-        verdict = ledger.study.verdict(entry.id, entry.outcome)
-        table.add_row(entry.id, "verdict", f"{verdict} {escape(condition)}".strip())
+        verdict = plain_entry(ledger.study, entry, ledger.folder)["verdict"]
+        table.add_row(entry.id, "verdict", escape(verdict))
         table.add_row("", "paper", escape(ledger.study.about(entry.id)["statement"]))
         table.add_row("", "ours", escape(ours))
     console().print(table)

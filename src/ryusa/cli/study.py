@@ -1,6 +1,5 @@
 """`ryusa study`, and what it shares with `ryusa paper` and `ryusa validate`."""
 
-from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -214,7 +213,7 @@ def _print(ledger: "Ledger") -> None:
     table = numbers_table()
     for entry in ledger.entries:
         plain = plain_entry(ledger.study, entry, ledger.folder)
-        first = [entry.id, f"{plain['verdict']} {plain['condition']}".strip()]
+        first = [entry.id, escape(plain["verdict"])]
         if not plain["trials"]:
             table.add_row(*first, escape(entry.problem or "no number"))
         for one in plain["trials"]:
@@ -226,11 +225,14 @@ def _print(ledger: "Ledger") -> None:
 
 
 def print_counts(ledger: "Ledger") -> None:
-    """How many findings have each verdict."""
-    words, name = ledger.study.words, ledger.study.verdict
-    counts = Counter((one.outcome, name(one.id, one.outcome)) for one in ledger.entries)
+    """How many findings have each verdict, and how many of these hold in most settings."""
+    from ryusa.study.entry import plain_entry
+    from ryusa.study.said import tally
+
+    entries = [plain_entry(ledger.study, one, ledger.folder) for one in ledger.entries]
     lines = [
-        f"{n} {verdict}" for word in words for (outcome, verdict), n in counts.items() if outcome == word
+        f"{n} {headline} ({settings})" if settings else f"{n} {headline}"
+        for _, headline, n, settings in tally(entries, ledger.study.said)
     ]
     typer.echo("; ".join(lines))
 

@@ -8,6 +8,7 @@ from ryusa.figures.comparison import Curve
 from ryusa.study.interval import Interval
 from ryusa.study.judge import Finding, Outcome, Trial
 from ryusa.study.origin import json_number
+from ryusa.study.said import plain_count, plain_effect
 from ryusa.study.study import Study
 
 DIGITS = 6  # significant digits of curves in the JSON file
@@ -34,18 +35,17 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
     """Return an entry as written to the JSON file; picture paths are relative to `folder`."""
     found = entry.finding if entry.finding is not None else Finding(entry.id, ())
     settings = {**found.settings, **(found.base[0].choices if found.base else {})}
-    return {
+    share = found.robustness
+    plain = {
         "id": entry.id,
         "part": entry.part,
         "title": found.title or study.part(entry.part).TITLE,
         "outcome": str(entry.outcome),
-        "verdict": study.verdict(entry.id, entry.outcome),
+        "verdict": "",
+        "base_outcome": str(found.base_outcome),
         "condition": found.condition,
         "counts": found.counts,
-        "base_verdict": study.verdict(entry.id, found.base_outcome),
-        "robustness": {
-            name: getattr(found.robustness, name) for name in ("holds", "of", "undecided", "low", "high")
-        },
+        "robustness": {**plain_count(share), "low": share.low, "high": share.high},
         "readings": list(found.readings),
         "deciding_factor": _deciding(found),
         "registered": _registered(study, entry),
@@ -62,6 +62,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "problem": entry.problem,
         "pictures": [one.relative_to(folder).as_posix() for one in entry.pictures],
     }
+    return {**plain, "verdict": str(study.said(plain))}
 
 
 def ours_in_words(finding: Finding) -> str:
@@ -74,11 +75,7 @@ def _deciding(found: Finding) -> dict[str, Any] | None:
     one = found.deciding
     if one is None:
         return None
-    return {
-        "choice": one.choice, "holds_at": list(one.levels), "p": one.p, "confirmed": one.confirmed,
-        "halves_of": "seeds" if found.has_seeds else "settings",
-        "there": list(one.inside), "elsewhere": list(one.outside),
-    }  # fmt: skip
+    return plain_effect(one, found.tried(one), "seeds" if found.has_seeds else "settings")
 
 
 def _registered(study: Study, entry: LedgerEntry) -> dict[str, Any] | None:

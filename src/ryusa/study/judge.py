@@ -234,23 +234,19 @@ class Finding:
 
         - excluded: the equations of its own source exclude the claim, whatever the runs show;
         - shown: no number has a permitted range;
-        - holds only if: one choice decides (`deciding`): it holds in most settings with the levels named, and
-          in none without;
+        - holds only if: the case file as it ships is not undecided, and one choice decides (`deciding`): it
+          holds in most settings with the levels named, and fails in all without;
         - holds, fails, undecided: otherwise, for the case file as it ships. `robustness` says in how many
           settings it holds.
         """
-        decides = self.deciding is not None and self.deciding.decides and not self.contradiction
-        return Outcome.ONLY_IF if decides else self.base_outcome
+        return outcome_of(self.base_outcome, self.deciding)
 
     @property
     def base_outcome(self) -> Outcome:
         """The verdict for the case file as it ships, whatever other settings show."""
-        held = list(self.by_choice.values())
         if self.contradiction:
             return Outcome.EXCLUDED
-        if not held:
-            return Outcome.SHOWN if self.trials else Outcome.UNDECIDED
-        return {True: Outcome.HOLDS, False: Outcome.FAILS, None: Outcome.UNDECIDED}[held[0]]
+        return base_outcome_of(self.by_choice, bool(self.trials))
 
     @property
     def robustness(self) -> Robustness:
@@ -272,13 +268,11 @@ class Finding:
     def condition(self) -> str:
         """Levels of the deciding choice at which it holds, in words, if it holds at no other."""
         one = self.deciding
-        if self.outcome is not Outcome.ONLY_IF or one is None:
-            return ""
-        tried = list(dict.fromkeys(dict(key)[one.choice] for key in self.by_choice))
-        return (
-            f"{one.choice} {_listed(one.levels, tried)} ({one.inside[0]} of {one.inside[1]} settings, "
-            f"none of {one.outside[1]} others)"
-        )
+        return "" if self.outcome is not Outcome.ONLY_IF or one is None else one.in_words(self.tried(one))
+
+    def tried(self, effect: Effect) -> list[str]:
+        """All values of a choice that were tried."""
+        return list(dict.fromkeys(dict(key)[effect.choice] for key in self.by_choice))
 
     @property
     def base(self) -> tuple[Trial, ...]:
@@ -287,25 +281,18 @@ class Finding:
         return tuple(one for one in self.trials if one.choices == first)
 
 
-def _listed(fits: Sequence[str], tried: Sequence[str]) -> str:
-    """Values in words; adjacent values of a numerical sweep are joined to a range.
+def base_outcome_of(held: Mapping[Key, bool | None], measured: bool) -> Outcome:
+    """Outcome of the case file as it ships, the first of `held`; `measured`: there is a number at all."""
+    if not held:
+        return Outcome.SHOWN if measured else Outcome.UNDECIDED
+    first = next(iter(held.values()))
+    return {True: Outcome.HOLDS, False: Outcome.FAILS, None: Outcome.UNDECIDED}[first]
 
-    >>> _listed(["20 deg", "30 deg", "40 deg"], ["10 deg", "20 deg", "30 deg", "40 deg"])
-    '20 deg to 40 deg'
+
+def outcome_of(base: Outcome, effect: Effect | None) -> Outcome:
+    """Outcome of a finding from that of the case file as it ships and the choice that decides.
+
+    Where the case as it ships is undecided, nothing is said to hold: no choice makes a verdict of that.
     """
-    order = sorted(tried, key=_number)
-    places = sorted(order.index(value) for value in fits)
-    runs: list[list[str]] = []
-    for place in places:
-        if runs and order.index(runs[-1][-1]) == place - 1 and math.isfinite(_number(order[place])):
-            runs[-1].append(order[place])
-        else:
-            runs.append([order[place]])
-    return " or ".join(one[0] if len(one) == 1 else f"{one[0]} to {one[-1]}" for one in runs)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text.split(maxsplit=1)[0])
-    except (ValueError, IndexError):
-        return math.inf
+    decided = base in (Outcome.HOLDS, Outcome.FAILS)
+    return Outcome.ONLY_IF if decided and effect is not None and effect.decides else base

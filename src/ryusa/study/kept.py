@@ -8,7 +8,10 @@ from typing import Any
 
 from ryusa.errors import ResultsError
 from ryusa.running.disk import write_atomically
+from ryusa.study.judge import Outcome, base_outcome_of, outcome_of
 from ryusa.study.ledger import FORMAT
+from ryusa.study.said import plain_count, plain_effect
+from ryusa.study.verdict import Effect, first_reading, held_of, robustness, settings_within
 
 COMPRESSED = ".xz"
 # Verdicts of format 1 and their outcomes.
@@ -41,7 +44,9 @@ def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
 
 
 def read_ledger(path: Path) -> dict[str, Any]:
-    """Read a ledger of any study, as JSON or compressed, and return it in format 2.
+    """Read a ledger of any study, as JSON or compressed, and return it in format 3.
+
+    What an older one says of settings is counted anew from its trials; its file is not changed.
 
     Raises
     ------
@@ -56,8 +61,40 @@ def read_ledger(path: Path) -> dict[str, Any]:
         known = f"formats 1 to {FORMAT}"
         raise ResultsError(f"{path}: is no ledger of ryusa, or of a later version (this one reads {known})")
     if plain["format"] == 1:
-        return _of_claims(plain) if "claims" in plain else _of_comparisons(plain)
+        plain = _of_claims(plain) if "claims" in plain else _of_comparisons(plain)
+    if plain["format"] < FORMAT:
+        return {**plain, "format": FORMAT, "findings": [_of_settings(one) for one in plain["findings"]]}
     return plain
+
+
+def _of_settings(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert an entry of format 2: its outcome and settings are counted anew from its trials.
+
+    Format 2 left undecided settings out of the shares, counted readings of the same runs as settings in
+    conditions, and said "only if" of cases that are undecided as they ship. The choice that decides is kept,
+    because it follows from single seeds, which no ledger has.
+    """
+    held, readings = held_of(entry["trials"]), tuple(entry.get("readings", ()))
+    excluded = entry["outcome"] == Outcome.EXCLUDED
+    base = Outcome.EXCLUDED if excluded else base_outcome_of(held, bool(entry["trials"]))
+    old, factor, effect = entry.get("deciding_factor"), None, None
+    if old and "confirmed" in old:  # without it nothing had confirmed the levels
+        levels = tuple(old["holds_at"])
+        shares = settings_within(held, old["choice"], levels, readings)
+        effect = Effect(old["choice"], old["p"], levels, *shares, old["confirmed"], old["choice"] in readings)
+        tried = list(dict.fromkeys(dict(key)[old["choice"]] for key in held))
+        factor = plain_effect(effect, tried, old["halves_of"])
+    outcome = outcome_of(base, effect)
+    every = robustness(list(first_reading(held, readings).values()))
+    return {
+        **{key: value for key, value in entry.items() if key != "base_verdict"},
+        "outcome": str(outcome),
+        "base_outcome": str(base),
+        "condition": factor["words"] if factor and outcome is Outcome.ONLY_IF else "",
+        "robustness": {**plain_count(every), "low": every.low, "high": every.high},
+        "readings": list(readings),
+        "deciding_factor": factor,
+    }
 
 
 def _of_claims(old: Mapping[str, Any]) -> dict[str, Any]:
@@ -76,7 +113,7 @@ def _of_claims(old: Mapping[str, Any]) -> dict[str, Any]:
         for one in old["claims"]
     ]
     kept = {key: value for key, value in old.items() if key != "claims"}
-    return {**kept, "format": FORMAT, "study": "paper", "findings": findings}
+    return {**kept, "format": 2, "study": "paper", "findings": findings}
 
 
 def _of_comparisons(old: Mapping[str, Any]) -> dict[str, Any]:
@@ -100,7 +137,7 @@ def _of_comparisons(old: Mapping[str, Any]) -> dict[str, Any]:
     ]
     kept = {key: value for key, value in old.items() if key != "comparisons"}
     return {
-        **kept, "format": FORMAT, "study": "validation", "indicative": old["level"] == "quick", "seeds": [],
+        **kept, "format": 2, "study": "validation", "indicative": old["level"] == "quick", "seeds": [],
         "findings": findings,
     }  # fmt: skip
 

@@ -1,6 +1,5 @@
 """The page of a study: its ledger as one self-contained HTML file."""
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from ryusa.study.html import embedded, is_wide, template, write_log
 from ryusa.study.interval import short
 from ryusa.study.kept import write_ledger
 from ryusa.study.ledger import Ledger
+from ryusa.study.said import tally
 from ryusa.study.study import LOOKS, Study, limits_in_words
 
 WHOLE_TABLE = 60  # rows; of a longer table the page shows the first HEAD
@@ -56,7 +56,6 @@ def render(
     for one in findings:
         first.setdefault(one["part"], one["id"])
     sections = [_section(study, one, first, tables, folder) for one in findings]
-    counts = Counter((one["outcome"], one["verdict"]) for one in findings)
     page = template(study.template, interval=interval, limits=limits_in_words, asked=study.asked)
     context = {
         "ledger": plain,
@@ -66,10 +65,8 @@ def render(
             (study.part(name).TITLE, [one for one in sections if one["part"] == name]) for name in first
         ],
         "counts": [
-            (verdict, n, *LOOKS[one])
-            for one in LOOKS
-            for (outcome, verdict), n in counts.items()
-            if outcome == str(one)
+            (headline, n, settings, *LOOKS[outcome])
+            for outcome, headline, n, settings in tally(findings, study.said)
         ],
         "looks": {str(one): look for one, look in LOOKS.items()},
         "words": {str(one): word for one, word in study.words.items()},
@@ -93,6 +90,7 @@ def _section(
     base = as_shipped(entry)
     return {
         **entry,
+        "said": study.said(entry),
         "facts": study.facts(entry),
         "images": [(one, embedded(folder / one)) for one in entry["pictures"] if not is_wide(folder / one)],
         "wide": [(one, embedded(folder / one)) for one in entry["pictures"] if is_wide(folder / one)],
@@ -149,7 +147,7 @@ def summary(study: Study, plain: Mapping[str, Any]) -> str:
     lines = ["| finding | number | value and interval | asked | verdict |", "|---|---|---|---|---|"]
     for one in plain["findings"]:
         base = [each for each in one["trials"] if each["choices"] == one["trials"][0]["choices"]]
-        verdict = f"{one['verdict']} {one['condition']}".strip()
+        verdict = str(study.said(one))
         for k, each in enumerate(base or [None]):
             cells = [one["id"], "", "", "", ""] if k == 0 else ["", "", "", "", ""]
             if each is not None:

@@ -9,6 +9,7 @@ from ryusa.results import Results
 from ryusa.study.judge import Finding, Outcome
 from ryusa.study.plan import Level, Plan
 from ryusa.study.registration import Registration
+from ryusa.study.said import SaidVerdict, said
 from ryusa.study.task import CaseRun, Task
 
 Found = Mapping[Any, Any]  # task -> result of `measure`, or the arrays of a calculation
@@ -66,7 +67,9 @@ class Study(ABC):
     stem : first part of the names of its ledger files.
     parts : names of the parts, in the order of the page.
     level : level whose files have no level in their names.
-    words : words for the verdicts, by outcome.
+    words : words for what the case as it ships gives, by outcome. "Holds only if" has none, because a verdict
+        says what holds as shipped, and then in which settings.
+    alone : said where the case as it ships is the only setting, in a study that varies free choices.
     registration : claims with the bands that judge them; without it a part states its bands itself.
     template : template of the page; it extends `page.html` of this package.
     """
@@ -77,7 +80,8 @@ class Study(ABC):
     stem = "ledger"
     parts: tuple[str, ...] = ()
     level = Level.STANDARD
-    words: Mapping[Outcome, str] = {one: str(one) for one in Outcome}
+    words: Mapping[Outcome, str] = {one: str(one) for one in Outcome if one is not Outcome.ONLY_IF}
+    alone = ""
     registration: Registration | None = None
     template = Path(__file__).with_name("page.html")
 
@@ -98,10 +102,14 @@ class Study(ABC):
         del entry
         return {}
 
-    def verdict(self, entry: str, outcome: Outcome) -> str:
-        """Words for the verdict on an entry."""
+    def word(self, entry: str, outcome: Outcome) -> str:
+        """Word for what the case as it ships gives, of the entry with this id."""
         del entry
         return self.words[outcome]
+
+    def said(self, entry: Mapping[str, Any]) -> SaidVerdict:
+        """The verdict on an entry in words, from the numbers that the ledger has of it."""
+        return said(entry, lambda outcome: self.word(entry["id"], outcome), self.alone)
 
     def order(self, entries: Sequence[str]) -> Sequence[str]:
         """Order the ids of the entries."""

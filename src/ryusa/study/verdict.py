@@ -17,21 +17,49 @@ Held = TypeVar("Held")
 
 
 @dataclass(frozen=True)
-class Robustness:
+class Count:
+    """Settings in which a finding holds, of all that were run.
+
+    Attributes
+    ----------
+    holds : settings in which it holds.
+    of : all settings that were run, each counted once, however often its runs are read.
+    undecided : settings whose interval includes a limit; they are among `of`.
+    """
+
+    holds: int = 0
+    of: int = 0
+    undecided: int = 0
+
+    @property
+    def fails(self) -> int:
+        """Settings in which it fails."""
+        return self.of - self.holds - self.undecided
+
+    def in_words(self, what: str = "settings", unsure: str = " ({} undecided)") -> str:
+        """Share with its undecided settings, which are never left out.
+
+        >>> Count(10, 17, 4).in_words(), Count(0, 4).in_words("others")
+        ('10 of 17 settings (4 undecided)', 'none of 4 others')
+        """
+        named = what.removesuffix("s") if self.of == 1 else what
+        return f"{self.holds or 'none'} of {self.of} {named}" + (
+            unsure.format(self.undecided) if self.undecided else ""
+        )
+
+
+@dataclass(frozen=True)
+class Robustness(Count):
     """Share of the settings in which a finding holds.
 
     Attributes
     ----------
-    holds, of : settings in which it holds, of those that are decided.
-    undecided : settings whose interval includes a limit; they are in neither number.
-    low, high : 95 % interval of the share by Wilson's score; 0 and 1 if none is decided.
+    low, high : 95 % interval of the share by Wilson's score; 0 and 1 if none was run. An undecided setting
+        may hold or fail: at the low end all of them fail, at the high end all of them hold.
     """
 
-    holds: int
-    of: int
-    undecided: int
-    low: float
-    high: float
+    low: float = 0.0
+    high: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -43,16 +71,18 @@ class Effect:
     choice : its name.
     p : probability of a table as uneven as this one if the choice had no effect, after correction.
     levels : values at which it holds more often than on average.
-    inside, outside : settings in which it holds, and those that are decided, with these levels and without.
+    inside, outside : settings with these levels and without; for a reading, settings read so and otherwise.
     confirmed : probability on the second half of the data, for the levels predicted from the first half.
+    reading : whether the choice is another reading of the same runs.
     """
 
     choice: str
     p: float
     levels: tuple[str, ...]
-    inside: tuple[int, int]
-    outside: tuple[int, int]
+    inside: Count
+    outside: Count
     confirmed: float = math.nan
+    reading: bool = False
 
     @property
     def significant(self) -> bool:
@@ -61,8 +91,27 @@ class Effect:
 
     @property
     def decides(self) -> bool:
-        """Whether the finding holds in most settings with these levels, and in none without."""
-        return 2 * self.inside[0] > self.inside[1] and self.outside[0] == 0
+        """Whether the finding holds in most settings with these levels, and fails in all without.
+
+        An undecided setting is neither: it does not count for "most", and it may hold, so that "only if" is
+        not shown where one lacks these levels.
+        """
+        return 2 * self.inside.holds > self.inside.of and self.outside.fails == self.outside.of
+
+    def in_words(self, tried: Sequence[str]) -> str:
+        """The choice and its levels, with the share of the settings with them and without.
+
+        Parameters
+        ----------
+        tried : all values of the choice.
+
+        >>> Effect("slip", 0.01, ("total",), Count(5, 9, 4), Count(0, 8)).in_words(["spring", "total"])
+        'slip total (5 of 9 settings, 4 undecided; none of 8 others)'
+        """
+        inside = self.inside.in_words(unsure=", {} undecided")
+        outside = self.outside.in_words("read otherwise" if self.reading else "others", ", {} undecided")
+        between = "; " if self.inside.undecided or self.outside.undecided else ", "
+        return f"{self.choice} {_listed(self.levels, tried)} ({inside}{between}{outside})"
 
 
 def robustness(held: Sequence[bool | None]) -> Robustness:
@@ -78,15 +127,38 @@ def robustness(held: Sequence[bool | None]) -> Robustness:
 
     >>> found = robustness([True, True, False, None])
     >>> found.holds, found.of, found.undecided, round(found.low, 2), round(found.high, 2)
-    (2, 3, 1, 0.21, 0.94)
+    (2, 4, 1, 0.15, 0.95)
     """
     from scipy import stats
 
-    holds, of = held.count(True), len(held) - held.count(None)
-    if of == 0:
-        return Robustness(0, 0, len(held), 0.0, 1.0)
-    share = stats.binomtest(holds, of).proportion_ci(CONFIDENCE, method="wilson")
-    return Robustness(holds, of, held.count(None), float(share.low), float(share.high))
+    count = counted(held)
+    if count.of == 0:
+        return Robustness()
+    least, most = (
+        stats.binomtest(holds, count.of).proportion_ci(CONFIDENCE, method="wilson")
+        for holds in (count.holds, count.of - count.fails)
+    )
+    return Robustness(count.holds, count.of, count.undecided, float(least.low), float(most.high))
+
+
+def counted(held: Collection[bool | None]) -> Count:
+    """Count what became of every setting; None is undecided."""
+    every = list(held)
+    return Count(every.count(True), len(every), every.count(None))
+
+
+def held_of(trials: Sequence[Mapping[str, Any]]) -> dict[Key, bool | None]:
+    """Whether a finding holds in each setting and reading, from its trials as the JSON file has them.
+
+    Every part that is judged must hold.
+    """
+    parts: dict[Key, list[str]] = {}
+    for one in trials:
+        if one["outcome"] != "shown":
+            parts.setdefault(tuple(one["choices"].items()), []).append(one["outcome"])
+    return {
+        key: False if "fails" in got else None if "undecided" in got else True for key, got in parts.items()
+    }
 
 
 def first_reading(held: Mapping[Key, Held], readings: Collection[str]) -> dict[Key, Held]:
@@ -112,10 +184,10 @@ def effects(held: Mapping[Key, bool | None], readings: Collection[str] = ()) -> 
 
     Notes
     -----
-    Undecided settings are left out. A choice that does not vary among the others has no effect to show. The
-    table of its values against holds and fails is tested exactly, by permutation where it has more than two
-    rows, which needs no number of settings to be large; the probabilities are corrected for the number of
-    choices (Holm 1979, Scand. J. Stat. 6, 65).
+    The test leaves undecided settings out; `inside` and `outside` count them. A choice that does not vary
+    among the others has no effect to show. The table of its values against holds and fails is tested exactly,
+    by permutation where it has more than two rows, which needs no number of settings to be large; the
+    probabilities are corrected for the number of choices (Holm 1979, Scand. J. Stat. 6, 65).
     """
     found: list[Effect] = []
     for name, _ in next(iter(held), ()):
@@ -127,7 +199,8 @@ def effects(held: Mapping[Key, bool | None], readings: Collection[str] = ()) -> 
         if len(values) < 2 or not counts.sum(axis=0).all():
             continue
         levels = _favourable(counts, values)
-        found.append(Effect(name, _probability(counts), levels, *_within(decided, name, levels)))
+        shares = settings_within(held, name, levels, readings)
+        found.append(Effect(name, _probability(counts), levels, *shares, reading=name in readings))
     return _corrected(found)
 
 
@@ -166,11 +239,10 @@ def deciding(
         here, there, whole = (_tested(each, one.choice, readings) for each in (first, second, held))
         values = list(dict.fromkeys(dict(key)[one.choice] for key in whole))
         levels = _favourable(_counted(here, one.choice, values), values)
-        inside, outside = _within(there, one.choice, levels)
-        table = [[inside[0], inside[1] - inside[0]], [outside[0], outside[1] - outside[0]]]
+        table = _within(there, one.choice, levels)
         confirmed: Any = stats.fisher_exact(table, alternative="greater")
         if float(confirmed.pvalue) < SIGNIFICANT:
-            inside, outside = _within(whole, one.choice, levels)
+            inside, outside = settings_within(held, one.choice, levels, readings)
             return replace(
                 one, levels=levels, inside=inside, outside=outside, confirmed=float(confirmed.pvalue)
             )
@@ -194,15 +266,34 @@ def _favourable(counts: np.ndarray, values: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _within(
-    held: Mapping[Key, bool | None], name: str, levels: Sequence[str]
-) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Settings in which it holds, of those decided, with these levels of a choice and with others."""
+def _within(held: Mapping[Key, bool | None], name: str, levels: Sequence[str]) -> list[list[int]]:
+    """Table for Fisher's test: holds and fails, with these levels of a choice and with others."""
     parts = [
         [one for key, one in held.items() if (dict(key)[name] in levels) is there] for there in (True, False)
     ]
-    there, elsewhere = ((one.count(True), len(one) - one.count(None)) for one in parts)
-    return there, elsewhere
+    return [[one.count(True), one.count(False)] for one in parts]
+
+
+def settings_within(
+    held: Mapping[Key, bool | None], name: str, levels: Collection[str], readings: Collection[str]
+) -> tuple[Count, Count]:
+    """Settings in which a finding holds with these levels of a choice, and without them.
+
+    Parameters
+    ----------
+    held, readings : as in `effects`.
+    name : the choice. Of a reading, several levels belong to one setting: it holds with the levels if it
+        holds by each of them, and it holds without them if it does by any other.
+    levels : its levels.
+    """
+    here: dict[Key, list[bool | None]] = {}
+    there: dict[Key, list[bool | None]] = {}
+    for key, one in first_reading(held, set(readings) - {name}).items():
+        setting = tuple(each for each in key if each[0] not in readings)
+        (here if dict(key)[name] in levels else there).setdefault(setting, []).append(one)
+    every = [False if False in got else None if None in got else True for got in here.values()]
+    some = [True if True in got else None if None in got else False for got in there.values()]
+    return counted(every), counted(some)
 
 
 def _probability(counts: np.ndarray) -> float:
@@ -222,3 +313,27 @@ def _corrected(found: list[Effect]) -> list[Effect]:
         p = max(p, min(1.0, one.p * (len(ordered) - rank)))
         corrected.append(replace(one, p=p))
     return corrected
+
+
+def _listed(fits: Sequence[str], tried: Sequence[str]) -> str:
+    """Values in words; adjacent values of a numerical sweep are joined to a range.
+
+    >>> _listed(["20 deg", "30 deg", "40 deg"], ["10 deg", "20 deg", "30 deg", "40 deg"])
+    '20 deg to 40 deg'
+    """
+    order = sorted(tried, key=_number)
+    places = sorted(order.index(value) for value in fits)
+    runs: list[list[str]] = []
+    for place in places:
+        if runs and order.index(runs[-1][-1]) == place - 1 and math.isfinite(_number(order[place])):
+            runs[-1].append(order[place])
+        else:
+            runs.append([order[place]])
+    return " or ".join(one[0] if len(one) == 1 else f"{one[0]} to {one[-1]}" for one in runs)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text.split(maxsplit=1)[0])
+    except (ValueError, IndexError):
+        return math.inf

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
-from ryusa.study import Outcome
 from ryusa.study.kept import read_ledger
 
 
@@ -20,15 +19,15 @@ def faults(ledger):
             found.append(f"{name}: {row['problem']}")
         else:
             found += [f"{name}: {fault}" for fault in _of_row(row)]
-        count = row["robustness"]["of"] + row["robustness"]["undecided"]
+        count = row["robustness"]["of"]
         if ledger["level"] == "quick" and count > 1:
             found.append(f"{name}: counts readings of the case as it ships as {count} settings")
     return found
 
 
 def _of_row(row):
-    if row["verdict"] != PAPER.verdict(row["id"], Outcome(row["outcome"])):
-        yield f"verdict {row['verdict']!r} is none of ours"
+    if row["verdict"] != str(PAPER.said(row)):
+        yield f"verdict {row['verdict']!r} is not what its numbers say"
     if row["registered"] is None:
         yield "is judged without a registration"
     if not row["trials"]:

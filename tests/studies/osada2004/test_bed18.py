@@ -61,7 +61,7 @@ def test_a_bed_that_flows_with_some_seeds_is_undecided():
     finding = judged(STANDARD, lambda slope, start, settled, seed: steady(0.5 if seed < 4 else 0.0))
     assert finding.base_outcome is Outcome.UNDECIDED
     assert finding.base[0].found.value == pytest.approx(0.75)
-    assert finding.robustness.of == 0
+    assert finding.robustness.undecided == finding.robustness.of == 17
 
 
 def test_the_start_that_decides_is_named():

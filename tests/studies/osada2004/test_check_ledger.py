@@ -8,13 +8,17 @@ from ryusa.study import Outcome
 faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
 
 
+ONE = {"holds": 0, "of": 1, "undecided": 0}
+
+
 def whole():
     trial = {"part": "length", "value": 1.0, "note": "", "choices": {}}
     rows = [
         {
-            "id": one, "outcome": "fails", "verdict": PAPER.verdict(one, Outcome.FAILS),
+            "id": one, "outcome": "fails", "base_outcome": "fails", "condition": "",
+            "verdict": f"{PAPER.word(one, Outcome.FAILS)} as shipped, the only setting",
             "registered": {"commit": "0" * 40}, "trials": [dict(trial)],
-            "decided_by": "physics", "problem": "", "robustness": {"of": 1, "undecided": 0},
+            "decided_by": "physics", "problem": "", "robustness": dict(ONE),
         }
         for one in CLAIMS
     ]  # fmt: skip
@@ -46,7 +50,9 @@ def test_what_is_missing_is_named():
 
 def test_a_second_reading_is_no_setting():
     ledger = whole()
-    row(ledger, "fig20-shear")["robustness"] = {"of": 4, "undecided": 1}
+    shear = row(ledger, "fig20-shear")
+    shear["robustness"] = {"holds": 0, "of": 5, "undecided": 1}
+    shear["verdict"] = "not reproduced as shipped, and in none of 5 settings (1 undecided)"
     assert faults(ledger) == ["fig20-shear: counts readings of the case as it ships as 5 settings"]
     assert faults(ledger | {"level": "standard"}) == []
 

@@ -109,7 +109,7 @@ def test_a_bed_that_stands_has_no_rods_says_so_and_decides_nothing():
     flat = [one for one in finding.trials if one.choices[SLOPE].startswith("1/10")]
     assert {one.note for one in flat} == {fig22.STANDS}
     assert finding.robustness.undecided == len(flat) // 2 > 0
-    assert finding.robustness.holds == finding.robustness.of == 17 - len(flat) // 2
+    assert (finding.robustness.holds, finding.robustness.of) == (17 - len(flat) // 2, 17)
 
 
 def test_seeds_count_by_their_movers_and_an_interval_ends_at_what_a_share_can_be():

@@ -5,29 +5,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from ryusa.studies.osada2004._parts import DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
-from ryusa.study.verdict import Key, first_reading
+from ryusa.study.verdict import Count, Key, counted, first_reading, held_of
 
 SHARED = (PHI, SLIP, PARTING, RATIO, ROTATION, DRAG)  # levels of the others differ between parts
 
 
 @dataclass(frozen=True)
-class LevelCell:
-    """One claim at one level.
-
-    Attributes
-    ----------
-    holds, of : settings in which it holds, of those that are decided.
-    undecided : settings whose interval includes a limit.
-    """
-
-    holds: int = 0
-    of: int = 0
-    undecided: int = 0
+class LevelCell(Count):
+    """One claim at one level: settings in which it holds, of all that were run with the level."""
 
     @property
     def look(self) -> str:
         """Class of its colour on the page."""
-        if self.of == 0:
+        if self.of == self.undecided:
             return "open" if self.undecided else "waits"
         return "yes" if self.holds == self.of else "partly" if self.holds else "no"
 
@@ -57,7 +47,7 @@ def tables(findings: Sequence[Mapping[str, Any]]) -> list[ChoiceTable]:
     ----------
     findings : entries as the JSON file holds them.
     """
-    held = {one["id"]: first_reading(outcomes(one["trials"]), one["readings"]) for one in findings}
+    held = {one["id"]: first_reading(held_of(one["trials"]), one["readings"]) for one in findings}
     found: list[ChoiceTable] = []
     for choice in SHARED:
         values = {
@@ -81,16 +71,6 @@ def tables(findings: Sequence[Mapping[str, Any]]) -> list[ChoiceTable]:
     return found
 
 
-def outcomes(trials: Sequence[Mapping[str, Any]]) -> dict[Key, str]:
-    """What became of a claim in each setting: every part of it that is judged must hold."""
-    parts: dict[Key, list[str]] = {}
-    for one in trials:
-        if one["outcome"] != "shown":
-            parts.setdefault(tuple(one["choices"].items()), []).append(one["outcome"])
-    worst = ("fails", "undecided", "holds")
-    return {key: next(word for word in worst if word in got) for key, got in parts.items()}
-
-
-def _cell(held: Mapping[Key, str], choice: str, level: str) -> LevelCell:
-    here = [word for key, word in held.items() if dict(key).get(choice) == level]
-    return LevelCell(here.count("holds"), len(here) - here.count("undecided"), here.count("undecided"))
+def _cell(held: Mapping[Key, bool | None], choice: str, level: str) -> LevelCell:
+    count = counted([one for key, one in held.items() if dict(key).get(choice) == level])
+    return LevelCell(count.holds, count.of, count.undecided)

@@ -40,12 +40,10 @@ QUESTIONS = (
 OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
     "conjecture": {
         Outcome.HOLDS: "conjecture holds",
-        Outcome.ONLY_IF: "conjecture holds only if",
         Outcome.FAILS: "conjecture does not hold",
     },
     "proposal": {
         Outcome.HOLDS: "proposal works",
-        Outcome.ONLY_IF: "proposal works only if",
         Outcome.FAILS: "proposal falls short",
     },
 }
@@ -62,12 +60,12 @@ class PaperStudy(Study):
     parts = NAMES
     words: Mapping[Outcome, str] = {
         Outcome.HOLDS: "reproduced",
-        Outcome.ONLY_IF: "reproduced only if",
         Outcome.FAILS: "not reproduced",
         Outcome.EXCLUDED: "contradicts its own equations",
-        Outcome.UNDECIDED: "undecided (spread)",
+        Outcome.UNDECIDED: "undecided",
         Outcome.SHOWN: "shown",
     }
+    alone = "the only setting"
     registration = REGISTRATION
     template = Path(__file__).with_name("paper.html")
 
@@ -91,8 +89,8 @@ class PaperStudy(Study):
             "caution": claim.caution,
         }
 
-    def verdict(self, entry: str, outcome: Outcome) -> str:
-        """Words for the verdict, which differ for what the paper supposes or proposes."""
+    def word(self, entry: str, outcome: Outcome) -> str:
+        """Word for what the case as it ships gives, another for what the paper supposes or proposes."""
         kind = REGISTRATION.claims[entry].kind
         return OF_KIND.get(kind, {}).get(outcome, self.words[outcome])
 
@@ -153,18 +151,16 @@ def _number(trial: Mapping[str, Any]) -> str:
 
 def table(plain: Mapping[str, Any]) -> str:
     """Give the lines of the table of docs/paper.md, from what the ledger holds: judged numbers as shipped."""
-    lines = ["| claim | the paper | ours, as shipped | verdict | holds in | decided by |", "|" + "---|" * 6]
+    lines = ["| claim | the paper | ours, as shipped | verdict | decided by |", "|" + "---|" * 5]
     for row in plain["findings"]:
         judged = [one for one in as_shipped(row) if one["outcome"] != "shown"]
-        share, why = row["robustness"], row["deciding_factor"]
-        unsure = f", {share['undecided']} undecided" if share["undecided"] else ""
+        why = row["deciding_factor"]
         cells = [
             row["id"],
             row["statement"],
             "<br>".join(map(_number, judged)),
-            f"{row['verdict']} {row['condition']}".strip(),
-            f"{share['holds']} of {share['of']}{unsure}" if judged else "",
-            f"{why['choice']}: {', '.join(why['holds_at'])}" if why else "",
+            str(PAPER.said(row)),
+            "" if not why else why["choice"] if row["condition"] else why["words"],
         ]
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)

@@ -163,7 +163,6 @@ class SoftenStudy(Study):
     parts = ("soften",)
     words: Mapping[Outcome, str] = {
         Outcome.HOLDS: "within",
-        Outcome.ONLY_IF: "within only if",
         Outcome.FAILS: "outside",
         Outcome.EXCLUDED: "outside",
         Outcome.SHOWN: "cannot be said",

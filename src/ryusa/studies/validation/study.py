@@ -48,7 +48,6 @@ class ValidationStudy(Study):
     parts = NAMES
     words: Mapping[Outcome, str] = {
         Outcome.HOLDS: "within",
-        Outcome.ONLY_IF: "within only if",
         Outcome.FAILS: "missed",
         Outcome.EXCLUDED: "missed",
         Outcome.SHOWN: "shown",
@@ -94,7 +93,7 @@ def table(plain: Mapping[str, Any]) -> str:
         errors += [f"and {more} more"] if more else []
         asked = [limits_in_words(each) for each in shown]
         cells = [f"{row['id']}: {row['title']}", row["source"], "<br>".join(errors), "<br>".join(asked)]
-        cells.append(row["verdict"])
+        cells.append(str(VALIDATION.said(row)))
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
 
