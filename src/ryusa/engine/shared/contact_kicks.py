@@ -74,7 +74,9 @@ def kick_across(
     dashpot, sliding : energy dissipated [J].
     slides : whether the contact slides.
     """
-    began, bound = (was == BEGAN) | (was == BACK), bounding(f_n, e_n)
+    began = (was == BEGAN) | (was == BACK)
+    # "total" takes its part of the dashpot after the kick, too (`after_kick`); a capped spring acts at once
+    bound = bounding(f_n, e_n) if total else f_n
     # of a contact that began the spring is that of this step, and the step before has no share in it
     way, before = 0.0 if began else dt, 0.0 if began else hdt
     soft = 1.0 / k_d if k_d > 0.0 else 0.0
