@@ -4,7 +4,7 @@ import pytest
 
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
-from ryusa.studies.calibrate.asked import read_calibration
+from ryusa.studies.calibrate.study_file import read_calibration
 
 GOOD = """
 [calibrate]

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from ryusa.studies.calibrate.asked import CalibrationAsked, Observation, Target, read_calibration
+from ryusa.studies.calibrate.asked import CalibrationAsked, Observation, Target
 from ryusa.studies.calibrate.carry import Calibration, Predicted, carry_out_calibration, refuse_truths
 from ryusa.studies.calibrate.page import write_calibration
 from ryusa.studies.calibrate.prior import Prior
+from ryusa.studies.calibrate.study_file import read_calibration
 from ryusa.study import ProgressLines
 from ryusa.study.executors import DEFAULT, executor_of
 
