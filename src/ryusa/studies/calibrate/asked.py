@@ -44,6 +44,26 @@ class Target:
 
 
 @dataclass(frozen=True)
+class ObservedValue:
+    """An observation in SI.
+
+    Attributes
+    ----------
+    value, error : observed value and its standard error.
+    discrepancy : standard deviation of what the model itself may be off by; 0 for a model without error.
+    """
+
+    value: float
+    error: float
+    discrepancy: float = 0.0
+
+    @property
+    def width(self) -> float:
+        """Standard deviation of the observation about the mean of the model."""
+        return math.hypot(self.error, self.discrepancy)
+
+
+@dataclass(frozen=True)
 class Observation:
     """What was observed of a target.
 
@@ -51,27 +71,41 @@ class Observation:
     ----------
     target : the quantity.
     value, error : observed value and its standard error, as written: text with a unit, or a number.
+    discrepancy : standard deviation of what the model itself may be off by, as written; None for none.
+    test : of a heap, by a word of `heaps.TESTS`; "" for any other measure.
     """
 
     target: Target
     value: str | float
     error: str | float
+    discrepancy: str | float | None = None
+    test: str = ""
 
-    def in_si(self, unit: str) -> tuple[float, float]:
-        """Value and error in the SI unit of the quantity.
+    @property
+    def words(self) -> str:
+        """Target, and the test that was observed."""
+        return f"{self.target.words} ({self.test})" if self.test else self.target.words
+
+    def in_si(self, unit: str) -> ObservedValue:
+        """Value, error and discrepancy in the SI unit of the quantity.
 
         Raises
         ------
         CaseError : another dimension, a unit too many or missing, or an error that is not positive.
         """
         where = f"observation of {self.target.words}"
-        found = [
+        value, error = (
             _in_si(f"{where}: {name}", one, unit)
             for name, one in (("value", self.value), ("error", self.error))
-        ]
-        if not found[1] > 0.0:
+        )
+        if not error > 0.0:
             raise CaseError(f"{where}: error", self.error, "must be greater than 0")
-        return found[0], found[1]
+        if self.discrepancy is None:
+            return ObservedValue(value, error)
+        discrepancy = _in_si(f"{where}: discrepancy", self.discrepancy, unit)
+        if discrepancy < 0.0:
+            raise CaseError(f"{where}: discrepancy", self.discrepancy, "must be 0 or more")
+        return ObservedValue(value, error, discrepancy)
 
 
 @dataclass(frozen=True)

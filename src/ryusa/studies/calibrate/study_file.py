@@ -12,6 +12,7 @@ from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, ParseError
 from ryusa.spelling import nearest_word
 from ryusa.studies.calibrate.asked import CalibrationAsked, Observation, Target
+from ryusa.studies.calibrate.heaps import read_test
 from ryusa.studies.calibrate.prior import LOG, NORMAL, UNIFORM, Prior
 from ryusa.studies.sweep.asked import text_of
 from ryusa.studies.sweep.design import span_of
@@ -23,7 +24,7 @@ _SETTINGS = ("points", "seeds", "rounds", "more", "design_seed", "set")
 _PARAMETER = ("key", "low", "high", "scale", "mean", "sd")
 _NAMED = ("case", "measure", "quantity")
 _TARGET = (*_NAMED, "at")
-_OBSERVATION = (*_TARGET, "value", "error")
+_OBSERVATION = (*_TARGET, "value", "error", "discrepancy", "test")
 
 
 def read_calibration(path: Path) -> CalibrationAsked:
@@ -239,7 +240,11 @@ def _observation(at: str, table: Mapping[str, Any], folder: Path) -> Observation
         one = table.get(name)
         if one is None or isinstance(one, bool) or not isinstance(one, (str, int, float)):
             raise CaseError(f"{at}.{name}", one, "missing; needs a quantity with its unit, such as '21 deg'")
-    return Observation(target, table["value"], table["error"])
+    discrepancy = table.get("discrepancy")
+    if isinstance(discrepancy, bool) or not isinstance(discrepancy, (str, int, float, type(None))):
+        raise CaseError(f"{at}.discrepancy", discrepancy, "must be a quantity with its unit, such as '2 deg'")
+    test = read_test(f"{at}.test", table.get("test"), target.measure)
+    return Observation(target, table["value"], table["error"], discrepancy, test)
 
 
 def _refuse_repeated(priors: Sequence[Prior], observations: Sequence[Observation]) -> None:
