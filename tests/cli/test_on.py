@@ -50,6 +50,7 @@ measure = "surface"
 quantity = "slope"
 value = "21 deg"
 error = "0.5 deg"
+test = "gate in a plane"
 """
 WORDS = {
     "sweep": ("heap.toml", "--seeds", "2", "-m", "surface"),

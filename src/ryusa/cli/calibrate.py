@@ -20,7 +20,16 @@ from ryusa.cli.study import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ryusa.studies.calibrate import Calibration, CalibrationAsked
+
+
+UNMOVED = (
+    "runs with different seeds gave the same numbers to the last digit; intervals have no scatter between "
+    "runs in them. Where that is not meant, the case needs something random, such as grains.spread"
+)
+UNREACHED = 4  # exit code where all was computed and the model does not reach the observations
 
 
 def register(app: typer.Typer) -> None:
@@ -39,11 +48,19 @@ def calibrate(
             help="Table, page, pictures and runs; default runs/calibration-STUDY.",
         ),
     ] = None,
+    extend: Annotated[
+        int,
+        typer.Option(
+            "--extend", metavar="N", min=0, max=10,
+            help="Where a posterior lies at an edge of its prior, extend that prior by half its range, as "
+            "far as the cases take the parameter, and run there; up to N times.",
+        ),
+    ] = 0,
     coverage: Annotated[
         int,
         typer.Option(
             "--coverage", metavar="N", min=0,
-            help="Check the intervals on N made-up truths, which are run too; 5 or more.",
+            help="Check intervals and verdict on N made-up truths, which are run too; 5 or more.",
         ),
     ] = 0,
     on: On = DEFAULT,
@@ -52,13 +69,14 @@ def calibrate(
     show: Show = False,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
-    """Find the parameters of cases that agree with observations, and say which are not determined.
+    """Find the parameters of cases that agree with observations, or say that none do.
 
     STUDY names parameters with their priors, observations with their errors, and
     the cases that show them. The cases are run at points that fill the priors,
     with several seeds; an emulator through these runs gives the posterior, and
-    further runs are made where it needs them. The same command continues an
-    interrupted calibration. Needs the extra calibrate.
+    further runs are made where it needs them. The verdict comes before the
+    numbers; exit code 4 where the model does not reach the observations. The same
+    command continues an interrupted calibration. Needs the extra calibrate.
     """
     from ryusa.errors import ResultsError
     from ryusa.studies.calibrate import (
@@ -68,7 +86,7 @@ def calibrate(
         write_calibration,
     )
     from ryusa.studies.calibrate.page import LOG
-    from ryusa.studies.sweep.table import UNMOVED, unmoved_by_seeds
+    from ryusa.studies.sweep.table import unmoved_by_seeds
     from ryusa.study import ProgressLines
 
     asked = read_calibration(study)
@@ -76,12 +94,13 @@ def calibrate(
     folder = Path("runs") / f"calibration-{asked.name}" if out is None else out
     where = executor_at(on, jobs)
     if show:
-        _list(asked, folder, where.jobs, coverage)
+        _list(asked, folder, where.jobs, coverage, extend)
         return
-    words = ["ryusa", "calibrate", study.name, *(["--coverage", str(coverage)] if coverage else [])]
+    words = ["ryusa", "calibrate", study.name, *(["--extend", str(extend)] if extend else [])]
+    words += ["--coverage", str(coverage)] if coverage else []
     try:
         made = carry_out_calibration(
-            asked, folder, where, again=again, truths=coverage,
+            asked, folder, where, again=again, extend=extend, truths=coverage,
             progress=None if quiet else ProgressLines(),
         )  # fmt: skip
         files = write_calibration(made, shlex.join(words))
@@ -96,9 +115,11 @@ def calibrate(
     if same:
         typer.echo(f"warning: {len(same)} of {n} points: {UNMOVED}", err=True)
     report_failures(made.runs.problems, {}, made.runs.traces, folder / LOG)
+    if not made.verdict.reached:
+        raise typer.Exit(UNREACHED)
 
 
-def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int) -> None:
+def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int, extend: int) -> None:
     """Parameters, quantities, and the cost of all runs."""
     from ryusa.running.folder import format_bytes
     from ryusa.studies.calibrate.design import filling_points
@@ -110,7 +131,8 @@ def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int) -> No
     for prior in asked.priors:
         typer.echo(f"{prior.key}: {prior.words}")
     for one in asked.observations:
-        typer.echo(f"observed: {one.target.words} {one.value} ± {one.error}")
+        off = "" if one.discrepancy is None else f" ± {one.discrepancy} of the model"
+        typer.echo(f"observed: {one.words} {one.value} ± {one.error}{off}")
     for target in asked.predictions:
         typer.echo(f"predicted: {target.words}")
     runs = CaseRuns(asked, folder, executor_of("processes", 1))
@@ -131,52 +153,107 @@ def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int) -> No
         f"{format_bytes(round(disk))} on the disk, in {folder / RUNS}"
     )
     typer.echo(f"by number of cores: {by_cores(cost, longest, total)}")
+    if extend:
+        each = asked.seeds * (asked.points // 2 + asked.rounds * asked.more) * len(plans)
+        typer.echo(f"not in these: about {each} runs for each prior that is extended")
 
 
 def _print(made: "Calibration") -> None:
-    """Every parameter with its uncertainty, and every quantity over the posterior."""
+    """The verdict, what stands behind it, then observations, parameters and predictions."""
+    from rich.markup import escape
+
+    first, *others = made.words
+    console().print(f"[bold]{escape(first)}[/bold]")
+    for one in others:
+        console().print(f"- {escape(one)}")
+    typer.echo()
+    _print_observations(made)
+    _print_parameters(made)
+    _print_predictions(made)
+    _print_coverage(made)
+
+
+def _print_observations(made: "Calibration") -> None:
+    from ryusa.studies.calibrate.sentences import shown
+    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+
+    rows: list[tuple[str, ...]] = []
+    for one, compared, si in zip(
+        made.asked.observations, made.verdict.compared, made.observed_units, strict=True
+    ):
+        unit, factor = shown(si)
+        rows.append(
+            (
+                one.target.words, f"{factor * compared.value:.4g} ± {factor * compared.error:.2g}",
+                printed_number(compared.predicted, 4, factor),
+                printed_interval(compared.least, compared.most, factor), unit, f"{compared.misfit:+.1f}",
+            )
+        )  # fmt: skip
+    _table(("observation", "observed", "posterior", "all runs", "unit", "misfit, s.d."), rows)
+
+
+def _print_parameters(made: "Calibration") -> None:
+    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+
+    rows = [
+        (
+            str(row["parameter"]), printed_number(row["mean"], 4),
+            printed_number(row["standard_deviation"], 2), str(row["unit"]),
+            printed_interval(row["low_95"], row["high_95"]), printed_number(row["over_prior"], 2),
+            "yes" if row["determined"] else "no",
+        )
+        for row in made.rows
+    ]  # fmt: skip
+    _table(("parameter", "mean", "± s.d.", "unit", "95 %", "of prior", "determined"), rows)
+
+
+def _print_predictions(made: "Calibration") -> None:
+    from ryusa.studies.calibrate.sentences import shown
+    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+
+    if not made.verdict.reached:
+        return
+    rows: list[tuple[str, ...]] = []
+    for one in made.predicted:
+        unit, factor = shown(one.unit)
+        if one.observed is None:
+            rows.append(
+                (
+                    one.target.words, printed_number(one.mean, 4, factor), printed_number(one.sd, 2, factor),
+                    printed_interval(one.low, one.high, factor), unit,
+                )
+            )  # fmt: skip
+    if rows:
+        _table(("predicted", "posterior", "± s.d.", "95 %", "unit"), rows)
+
+
+def _print_coverage(made: "Calibration") -> None:
+    if made.coverage is None:
+        return
+    rows = [
+        (
+            str(row["parameter"]), str(row["interval"]), f"{row['inside']} of {row['truths']}",
+            f"{row['expected_low']} to {row['expected_high']}",
+        )
+        for row in made.coverage.rows(tuple(one.key for one in made.asked.priors))
+    ]  # fmt: skip
+    _table(("made-up truths: parameter", "interval", "hold the truth", "by chance"), rows)
+    rows = [
+        (str(row["observations"]), f"{row['wrong']} of {row['of']}", f"at most {row['at_most']}")
+        for row in made.coverage.verdict_rows()
+    ]
+    _table(("made-up observations", "wrong verdicts", "by chance, at 5 %"), rows)
+
+
+def _table(headings: "Sequence[str]", rows: "Sequence[Sequence[str]]") -> None:
+    """Print a table whose first column is text."""
     from rich import box
     from rich.markup import escape
     from rich.table import Table
 
-    from ryusa.studies.calibrate.carry import UNDETERMINED
-    from ryusa.studies.calibrate.pictures import shown
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("parameter")
-    for heading in ("mean", "± s.d.", "unit", "95 %", "of prior"):
-        table.add_column(heading, justify="right")
-    table.add_column("")
-    for row in made.rows:
-        table.add_row(
-            escape(str(row["parameter"])), f"{row['mean']:.4g}", f"{row['standard_deviation']:.2g}",
-            escape(str(row["unit"])), f"{row['low_95']:.4g} to {row['high_95']:.4g}",
-            f"{row['over_prior']:.2f}", "" if row["determined"] else UNDETERMINED,
-        )  # fmt: skip
+    for k, heading in enumerate(headings):
+        table.add_column(heading, justify="left" if k == 0 else "right", no_wrap=k > 0)
+    for row in rows:
+        table.add_row(*(escape(one) for one in row))
     console().print(table)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("quantity")
-    for heading in ("observed", "posterior", "± s.d.", "95 %", "unit"):
-        table.add_column(heading, justify="right")
-    for one in made.predicted:
-        unit, factor = shown(one.unit)
-        seen = (
-            "predicted"
-            if one.observed is None
-            else f"{factor * one.observed[0]:.4g} ± {factor * one.observed[1]:.2g}"
-        )
-        table.add_row(
-            escape(one.target.words), seen, f"{factor * one.mean:.4g}", f"{factor * one.sd:.2g}",
-            f"{factor * one.low:.4g} to {factor * one.high:.4g}", unit,
-        )  # fmt: skip
-    console().print(table)
-    if made.coverage is not None:
-        table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-        for heading in ("made-up truths: parameter", "interval", "hold the truth", "by chance"):
-            table.add_column(heading)
-        for row in made.coverage.rows(tuple(one.key for one in made.asked.priors)):
-            table.add_row(
-                escape(str(row["parameter"])), str(row["interval"]), f"{row['inside']} of {row['truths']}",
-                f"{row['expected_low']} to {row['expected_high']}",
-            )  # fmt: skip
-        console().print(table)

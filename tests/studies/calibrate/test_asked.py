@@ -4,7 +4,8 @@ import pytest
 
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
-from ryusa.studies.calibrate.asked import read_calibration
+from ryusa.studies.calibrate.asked import ObservedValue
+from ryusa.studies.calibrate.study_file import read_calibration
 
 GOOD = """
 [calibrate]
@@ -53,7 +54,7 @@ def test_a_calibration_is_read_with_its_priors_and_targets(tmp_path):
         "drop: collisions restitution_alone", "drop: collisions closing_speed",
     ]  # fmt: skip
     assert found.overrides == {"stop.time": "0.2 s"}
-    assert found.observations[0].in_si("-") == (0.7, 0.01)
+    assert found.observations[0].in_si("-") == ObservedValue(0.7, 0.01)
 
 
 def test_a_quantity_over_height_is_a_target_at_each_height(tmp_path):
@@ -102,6 +103,8 @@ def test_a_quantity_over_height_is_a_target_at_each_height(tmp_path):
             "has the name of another case",
         ),
         ("[calibrate]", "[calibrate", "is no TOML"),
+        ("error = 0.01", "error = 0.01\ndiscrepancy = true", "observations.0.discrepancy = True: must be"),
+        ("error = 0.01", 'error = 0.01\ntest = "other"', "is for observations of a heap"),
     ],
 )
 def test_a_fault_is_named_by_its_key(tmp_path, old, new, said):
@@ -129,9 +132,20 @@ def test_all_faults_of_a_file_are_named_together(tmp_path):
         ("21 cm", "0.5 deg", "rad", "'cm' does not measure an angle"),
         ("0.7 m", "0.1", "-", "must be a number without a unit"),
         (0.7, 0.0, "-", "must be greater than 0"),
+        (0.7, 0.1, "m", "value = 0.7: missing unit"),
     ],
 )
 def test_an_observation_in_another_unit_is_refused(tmp_path, value, error, unit, said):
     text = GOOD.replace("value = 0.7", f"value = {value!r}").replace("error = 0.01", f"error = {error!r}")
     with pytest.raises(CaseError, match=f"(?s).*{said}"):
         read(tmp_path, text).observations[0].in_si(unit)
+
+
+def test_a_discrepancy_is_added_to_the_error(tmp_path):
+    found = read(tmp_path, GOOD.replace("error = 0.01", "error = 0.03\ndiscrepancy = 0.04"))
+    held = found.observations[0].in_si("-")
+    assert held == ObservedValue(0.7, 0.03, 0.04)
+    assert held.width == pytest.approx(0.05)
+    below = read(tmp_path, GOOD.replace("error = 0.01", "error = 0.01\ndiscrepancy = -0.04"))
+    with pytest.raises(CaseError, match=r"discrepancy = -0\.04: must be 0 or more"):
+        below.observations[0].in_si("-")

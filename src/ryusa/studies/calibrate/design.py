@@ -43,7 +43,7 @@ def next_points(posterior: Posterior, seen: Sequence[Seen], n: int, seeds: int, 
     held = [one.emulator.covariance(u) for one in seen]
     chosen: list[int] = []
     for _ in range(min(n, len(u))):
-        gain = np.sum([np.diag(cov) / one.error**2 for cov, one in zip(held, seen, strict=True)], axis=0)
+        gain = np.sum([np.diag(cov) / one.width**2 for cov, one in zip(held, seen, strict=True)], axis=0)
         gain[chosen] = -1.0  # the same point with the same seeds would be the same run
         best = int(np.argmax(gain))
         chosen.append(best)

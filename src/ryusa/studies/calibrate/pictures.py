@@ -1,7 +1,5 @@
 """Pictures of a calibration from its posterior, emulators and runs."""
 
-import math
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -15,24 +13,20 @@ from ryusa.figures.calibration import (
 )
 from ryusa.studies.calibrate.carry import Calibration
 from ryusa.studies.calibrate.design import filling_points
+from ryusa.studies.calibrate.sentences import shown
 from ryusa.studies.sweep.part import short_names
 from ryusa.studies.sweep.pictures import printed_unit
 
+PARTS = ("parameters", "predicted", "emulators")
 SAMPLE = 4000  # points of the posterior that are drawn
-TURN = {"rad": ("deg", 180.0 / math.pi)}  # SI unit -> unit of pictures and pages, and factor
-
-
-def shown(unit: str) -> tuple[str, float]:
-    """Unit in which pages and pictures give a quantity, and the factor from its SI unit.
-
-    >>> shown("rad")[0], shown("m")
-    ('deg', ('m', 1.0))
-    """
-    return TURN.get(unit, (unit, 1.0))
 
 
 def drawn_calibration(made: Calibration) -> dict[str, Figure]:
-    """Pictures by name: parameters, emulators, predicted."""
+    """Pictures by name, of `PARTS`.
+
+    The distribution of the parameters is drawn where the verdict allows an interval, that of the quantities
+    from two seeds on.
+    """
     rng = np.random.default_rng(0)
     posterior, priors = made.posterior, made.asked.priors
     chosen = posterior.values[rng.choice(len(posterior.u), SAMPLE, p=posterior.weights)]
@@ -57,11 +51,12 @@ def drawn_calibration(made: Calibration) -> dict[str, Figure]:
         prior = mean + width * rng.standard_normal(len(mean))
         seen = None if one.observed is None else (factor * one.observed[0], factor * one.observed[1])
         predicted.append(PredictedTarget(label, factor * prior, factor * sample, seen))
-    return {
-        "parameters": parameters_picture(parameters),
-        "predicted": predicted_picture(predicted),
-        "emulators": emulators_picture(emulated),
-    }
+    drawn = {"emulators": emulators_picture(emulated)}
+    if made.verdict.seeds > 1:
+        drawn = {"predicted": predicted_picture(predicted), **drawn}
+    if made.verdict.has_intervals:
+        drawn = {"parameters": parameters_picture(parameters), **drawn}
+    return drawn
 
 
 def _label(name: str, unit: str) -> str:

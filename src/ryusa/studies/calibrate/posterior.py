@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from ryusa.errors import ResultsError
 from ryusa.studies.calibrate.emulator import Emulator
 from ryusa.studies.calibrate.prior import Prior, in_cube
 
@@ -18,7 +17,7 @@ Floats = NDArray[np.float64]
 POINTS = 2**13  # of a round of sampling
 ROUNDS = 6
 ENOUGH = 1000.0  # points that the weighted ones are worth, from which no further round is made
-LEAST = 100.0  # below it the result is refused
+LEAST = 100.0  # below it the points are too few for a result
 WIDER = 1.5  # standard deviations of a proposal over those found so far
 PRIOR_SHARE = 0.2  # of the points that a proposal takes from the prior
 UNDETERMINED = (
@@ -35,11 +34,18 @@ class Seen:
     ----------
     emulator : of the quantity.
     value, error : observed value and its standard error.
+    discrepancy : standard deviation of what the model itself may be off by; 0 for a model without error.
     """
 
     emulator: Emulator
     value: float
     error: float
+    discrepancy: float = 0.0
+
+    @property
+    def width(self) -> float:
+        """Standard deviation of the observation about the mean of the model."""
+        return math.hypot(self.error, self.discrepancy)
 
 
 @dataclass(frozen=True)
@@ -93,9 +99,30 @@ class Posterior:
         """Standard deviation of every parameter over that of its prior [-]."""
         return self.sd() / prior_sd(self.priors)
 
-    def determined(self) -> NDArray[np.bool_]:
+    def learnt(self) -> NDArray[np.bool_]:
         """Whether the observations say something of each parameter."""
         return self.narrowing() < UNDETERMINED
+
+    def at_ends(self, k: int) -> tuple[float, float]:
+        """Posterior over prior at the low and at the high end of parameter k, over its largest value [-].
+
+        Notes
+        -----
+        Both are densities in the share of the prior, in which the prior is uniform: the mass within half a
+        standard deviation of the end, or within a tenth of the range where that is less, over that of the
+        window of this width that holds most.
+        """
+        order = np.argsort(self.u[:, k])
+        u, upto = self.u[order, k], np.cumsum(self.weights[order])
+        sd = math.sqrt(float(self.weights @ (self.u[:, k] - self.weights @ self.u[:, k]) ** 2))
+        width = min(max(0.5 * sd, 1e-6), 0.1)
+        starts = np.concatenate([[0.0, 1.0 - width], np.clip(u[:: max(len(u) // 1000, 1)], 0.0, 1.0 - width)])
+        held = np.interp(starts + width, u, upto, 0.0, 1.0) - np.interp(starts, u, upto, 0.0, 1.0)
+        return float(held[0] / held.max()), float(held[1] / held.max())
+
+    def resampled(self, seed: int = 0) -> Floats:
+        """Points of equal weight, drawn from the weighted ones, shape (n, n_parameters)."""
+        return self.u[np.random.default_rng(seed).choice(len(self.u), POINTS, p=self.weights)]
 
     def of(self, emulator: Emulator, seed: int = 0, noise: bool = False) -> tuple[float, float, Floats]:
         """Mean, standard deviation and sample of a quantity over the posterior, in its unit.
@@ -106,12 +133,10 @@ class Posterior:
         seed : of the sample.
         noise : whether the scatter of a single run is part of it.
         """
-        rng = np.random.default_rng(seed)
-        chosen = self.u[rng.choice(len(self.u), POINTS, p=self.weights)]
-        mean, sd = emulator.at(chosen)
+        mean, sd = emulator.at(self.resampled(seed))
         width = np.hypot(sd, emulator.noise) if noise else sd
-        sample = mean + width * rng.standard_normal(len(mean))
-        return float(sample.mean()), float(sample.std()), sample
+        sample = mean + width * np.random.default_rng(seed + 1).standard_normal(len(mean))
+        return float(mean.mean()), float(sample.std()), sample
 
 
 def prior_sd(priors: Sequence[Prior]) -> Floats:
@@ -134,23 +159,20 @@ def weighted_quantile(values: Floats, weights: Floats, q: float) -> float:
 def log_likelihood(seen: Sequence[Seen], u: Floats) -> Floats:
     """Logarithm of the likelihood of the observations, but for a constant.
 
-    Each observation is normal about the mean of the emulator, with the sum of the variances of its error and
-    of the emulator for want of runs. Errors of observations are taken as independent.
+    Each observation is normal about the mean of the emulator, with the sum of the variances of its error, of
+    the discrepancy of the model and of the emulator for want of runs. Errors of observations are taken as
+    independent.
     """
     total = np.zeros(len(u))
     for one in seen:
         mean, sd = one.emulator.at(u)
-        var = one.error**2 + sd**2
+        var = one.width**2 + sd**2
         total -= 0.5 * ((one.value - mean) ** 2 / var + np.log(var))
     return total
 
 
 def sample_posterior(priors: tuple[Prior, ...], seen: Sequence[Seen], seed: int = 0) -> Posterior:
     """Weigh points of the prior by their likelihood, in rounds that come nearer to where it is large.
-
-    Raises
-    ------
-    ResultsError : no point of the prior gives anything like the observations.
 
     Notes
     -----
@@ -178,14 +200,7 @@ def sample_posterior(priors: tuple[Prior, ...], seen: Sequence[Seen], seed: int 
         u = np.concatenate([u, fresh])
         found = np.concatenate([found, log_likelihood(seen, fresh)])
         weights = _weights(found, u, proposals)
-    made = Posterior(priors, u, weights)
-    if not made.worth >= LEAST:
-        raise ResultsError(
-            f"the observations single out so little of the priors that {len(u):,} points hold only "
-            f"{made.worth:.0f} that count: the priors cannot give what was observed, or the errors of the "
-            "observations are too small"
-        )
-    return made
+    return Posterior(priors, u, weights)
 
 
 def _proposed(n: int, mean: Floats, root: Floats, seed: int) -> Floats:

@@ -1,19 +1,22 @@
 """Runs of a calibration: every case at points of the parameters, and what they gave."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.casefile.derive import derive
 from ryusa.errors import CaseError, ResultsError
 from ryusa.spelling import nearest_word
 from ryusa.studies.calibrate.asked import CalibrationAsked, Target
 from ryusa.studies.calibrate.design import settings_of
+from ryusa.studies.calibrate.heaps import read_test, refuse_other_test
+from ryusa.studies.calibrate.prior import DIGITS, Prior
 from ryusa.studies.sweep.folder import changed_runs
-from ryusa.studies.sweep.part import Measured, SweepRun
+from ryusa.studies.sweep.part import Measured, SweepRun, runs_of
 from ryusa.studies.sweep.plan import SweepPlan, plan_sweep
 from ryusa.study.executors import RunExecutor
 from ryusa.study.origin import traces_of
@@ -67,6 +70,7 @@ class CaseRuns:
                 case, design, seeds, self.asked.measures(case), overrides=self.asked.overrides, pages=False,
                 heights=self.asked.heights(case),
             )  # fmt: skip
+            self._refuse_other_tests(case, found[case])
             changed = {} if self.again else changed_runs(found[case].runs, self.folder)
             if changed:
                 every = list(dict.fromkeys(one for held in changed.values() for one in held))
@@ -76,6 +80,31 @@ class CaseRuns:
                     "it back, or make all runs anew with --again"
                 )
         return found
+
+    def _refuse_other_tests(self, case: Path, plan: SweepPlan) -> None:
+        for k, one in enumerate(self.asked.observations):
+            if one.target.case == case:
+                key = f"observations.{k}.test"
+                test = read_test(key, one.test or None, one.target.measure)  # of an `asked` made in Python
+                refuse_other_test(key, test, plan.runs[0].read())
+
+    def widen(self, priors: tuple[Prior, ...]) -> None:
+        """Take wider priors; every run so far gets its place in them."""
+        self.asked = replace(self.asked, priors=priors)
+        self.u = {run: _place(self.asked, run) for run in self.u}
+
+    def takes(self, key: str, value: float) -> bool:
+        """Whether all cases take a value of a parameter, the others being in the middle of their priors."""
+        setting = {
+            one.key: f"{value:.{DIGITS}g} {one.unit}".rstrip() if one.key == key else one.text(0.5)
+            for one in self.asked.priors
+        }
+        try:
+            for case in self.asked.cases:
+                derive(runs_of(case, self.asked.overrides, [setting], (1,))[0].read())
+        except CaseError:
+            return False
+        return True
 
     def make(self, u: Floats, seeds: Sequence[int]) -> list[SweepRun]:
         """Carry out every case at points with seeds; return the runs."""
