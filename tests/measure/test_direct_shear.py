@@ -65,7 +65,7 @@ def sheared(*, mu=0.5, towards=-1.0, servos=1, along=(-1.0, 0.0, 0.0), spin=0.0,
     travel[:, LID] = 0.01 - 0.001 * after
     return SimpleNamespace(
         case={"record": {"settle": 0.1}}, scene=scene_at(0.0), scene_at=scene_at, walls=impulse,
-        wall_travel=travel, tally={"t": T},
+        row=None, wall_travel=travel, tally={"t": T},
     )  # fmt: skip
 
 

@@ -51,6 +51,7 @@ def turning(make, *, rate=RATE, axis=(0.0, 1.0, 0.0), turns=2.3):
         frames=SimpleNamespace(t=t),
         scene=scene,
         walls=impulse,
+        row=None,
         wall_travel=np.zeros((len(t), 3)),
         tally=tally,
     )

@@ -48,7 +48,13 @@ def sheared(make, *, along=1.0, towards=-1.0, speed=0.75, spin=0.0, servos=1):
     frames = SimpleNamespace(t=t, x=np.repeat(x[None], len(t), 0), v=np.repeat(v[None], len(t), 0))
     frames.omega = np.zeros_like(frames.v)
     return SimpleNamespace(
-        case={}, frames=frames, scene=scene, walls=impulse, wall_travel=np.zeros((len(t), 2)), tally={"t": t}
+        case={},
+        frames=frames,
+        scene=scene,
+        walls=impulse,
+        row=None,
+        wall_travel=np.zeros((len(t), 2)),
+        tally={"t": t},
     )
 
 

@@ -41,7 +41,13 @@ def turned(make, *, rate=RATE, tilt=0.0, off=0.0, change=0.0):
     frames = SimpleNamespace(t=t, x=np.repeat(x[None], len(t), 0), v=np.repeat(v[None], len(t), 0))
     frames.omega = np.zeros_like(frames.v)
     return SimpleNamespace(
-        case={}, frames=frames, scene=scene, walls=impulse, wall_travel=np.zeros((len(t), 2)), tally={"t": t}
+        case={},
+        frames=frames,
+        scene=scene,
+        walls=impulse,
+        row=None,
+        wall_travel=np.zeros((len(t), 2)),
+        tally={"t": t},
     )
 
 

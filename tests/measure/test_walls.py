@@ -27,7 +27,7 @@ def pushed(forces: dict[str, float]) -> Any:
     faces = (np.zeros((n, 9)), np.zeros(n, int), np.arange(n), np.arange(n), np.ones(n, bool))
     scene = SimpleNamespace(walls=Walls(*faces, motion, tuple(forces)), has_servo=False)
     return SimpleNamespace(
-        case={}, scene=scene, tally={"t": T}, walls=impulse, wall_travel=np.zeros((len(T), n))
+        case={}, scene=scene, tally={"t": T}, walls=impulse, row=None, wall_travel=np.zeros((len(T), n))
     )
 
 

@@ -115,7 +115,10 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
         np.array([Carrier.of(row, window[0]).axis_point for row in now.motion]), rate[:, :, 6], rate[:, :, 7],
         0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None, Averages("walls", tuple(items)),
     )  # fmt: skip
-    return replace(found, averages=replace(found.averages, notes=_notes(found, now.moving().tolist())))
+    notes = _notes(found, now.moving().tolist())
+    if run.row is not None and run.row.row.dams:
+        notes = (*notes, "the water is not in them: `ryusa measure RUN loads` has both, of dams")
+    return replace(found, averages=replace(found.averages, notes=notes))
 
 
 def _notes(found: WallForces, moves: list[bool]) -> tuple[str, ...]:
