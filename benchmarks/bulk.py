@@ -15,7 +15,8 @@ Four quantities of 2,000 grains, each from the same first grains in every code:
 with that of ryusa with exact timing and 50 steps, each by the slip rule of the peer, seed by seed. The error
 of a number of steps is bounded by |mean difference| plus half its 95 % interval. `costs` then times
 every code with the fewest steps from which on that bound stays below 3 % and below 1 %, in turn, each at its
-best skin. Where seeds do not resolve a bound the step that would do is not known, and the row says so.
+best skin, over 20,000 steps at least, so that it is not the end of a run folder that is timed: a gas is a
+colder one then. Where seeds do not resolve a bound the step that would do is not known, and the row says so.
 
 No number is asked for: README says what comes out.
 """
@@ -33,7 +34,7 @@ from typing import Any
 import machine
 import numpy as np
 import workloads
-from accuracy import contact, cost, tuned
+from accuracy import FEWEST, contact, cost, tuned
 from peer import Job
 from peer_lammps import found_lammps, found_liggghts
 from peer_ryusa import EXACT, Ryusa
@@ -238,7 +239,7 @@ def cost_rows(name: str, judgement: dict[str, Any], codes: dict[str, list[Any]],
             if steps is None:
                 continue
             dt, count = step_of(steps, one.time)
-            count = max(math.ceil(builds[0].share * count), 200)
+            count = max(math.ceil(builds[0].share * count), 10 * FEWEST)
             job = Job(one.load, one.first(0, options.work), 1, max(count // 10, 2), count, dt=dt)
             jobs[label] = tuned(builds, job, options.work)
         watch, names = machine.Watch(), list(jobs)
