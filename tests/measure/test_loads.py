@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.measure.made_rows import DX, DZ, WIDTH, G, row_of, run_of
+from tests.measure.test_walls import pushed
 
 from ryusa.errors import ResultsError
 from ryusa.figures.loads import loads as drawn
@@ -89,13 +90,23 @@ def test_grains_turn_the_dam_about_its_toe(monkeypatch: pytest.MonkeyPatch) -> N
         torque=np.broadcast_to([np.zeros(3), np.cross(place - about, force)], (10, 2, 3)),
     )  # fmt: skip
     run.scene = SimpleNamespace(walls=of)
-    monkeypatch.setitem(loads.__globals__, "walls", lambda *_: of)
+    monkeypatch.setitem(loads.__globals__, "forces_of_frames", lambda *_: of)
     found = loads(run)
     turn = np.cross(place - np.array([TOE, 0.0, 0.0]), force)[1]
     assert found.grains[:, 0] == pytest.approx(np.tile([2.0, -3.0, turn], (10, 1)))
     assert found.total == pytest.approx(found.water + found.grains)
     assert not any("no wall" in one for one in found.averages.notes)
     drawn(found)
+
+
+def test_frames_are_those_of_the_water_though_the_account_is_of_a_step_earlier() -> None:
+    run, weir = ponded(0.003, 0.0), pushed({"weir": 0.5})
+    run.scene, run.walls, run.wall_travel = weir.scene, weir.walls[:11], weir.wall_travel[:11]
+    run.tally = {"t": np.maximum(T - 1e-4, 0.0)}
+    found = loads(run, begin=0.1, end=0.8)
+    assert found.t == pytest.approx(0.1 * np.arange(1, 8) + 0.05)
+    assert found.grains.shape == found.water.shape == (7, 1, 3)
+    assert found.grains[:, 0, 0] == pytest.approx(np.full(7, 0.25))  # 0.5 N over frames 0.05 s apart
 
 
 def test_a_row_without_a_dam_that_stops_water_is_refused() -> None:

@@ -20,6 +20,7 @@ from ryusa.errors import CaseError, GrainLost
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.deposit import deposit
 from ryusa.measure.front import front
+from ryusa.measure.loads import loads
 from ryusa.measure.long_section import long_section
 from ryusa.measure.walls import walls
 from ryusa.model.traffic import IN, OUT
@@ -114,6 +115,15 @@ def run(folder: Path, more: dict[str, str] | None = None, **how: Any) -> Results
 @pytest.fixture(scope="module")
 def stream(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("stream") / "run")
+
+
+@pytest.mark.full
+def test_the_dam_is_pushed_by_water_and_grains_of_the_same_frames(stream: Results) -> None:
+    found, of = loads(stream), walls(stream)
+    w = of.names.index("dam")
+    assert found.grains[:, 0, 0] == pytest.approx(of.force[:, w, 0])
+    assert found.grains[:, 0, 1] == pytest.approx(of.force[:, w, 2])
+    assert (found.water[:, 0, 0] != 0.0).all()
 
 
 @pytest.mark.full

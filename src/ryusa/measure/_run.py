@@ -5,19 +5,11 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.errors import ResultsError
 from ryusa.model import Scene
 
 Floats = NDArray[np.float64]
 Above = Literal["datum", "bed crest", "mean crest"]
-
-
-class FrameArrays(Protocol):
-    """Snapshots; the big arrays may be read from the disk when they are indexed."""
-
-    t: Floats  # [s], shape (n_frame,)
-    x: Any  # unwrapped centres [m], shape (n_frame, n_grain, 3)
-    v: Any  # [m/s], the same shape
-    omega: Any  # [rad/s], the same shape
 
 
 class Run(Protocol):
@@ -39,6 +31,24 @@ def settle_time(run: Run) -> float:
     """Time before which measures ignore the record [s]: `record.settle` of the case, else 0."""
     value = (run.case.get("record") or {}).get("settle")
     return 0.0 if value is None else float(value)
+
+
+def frames_between(t: Floats, begin: float, end: float) -> slice:
+    """Numbers of the frames of a window.
+
+    Parameters
+    ----------
+    t : times of all frames, ascending [s].
+    begin, end : of the window, both in it [s].
+
+    Raises
+    ------
+    ResultsError : fewer than two frames lie in it.
+    """
+    first, last = int(np.searchsorted(t, begin, "left")), int(np.searchsorted(t, end, "right"))
+    if last - first < 2:
+        raise ResultsError(f"{last - first} frames from t = {begin:g} s to {end:g} s; 2 or more are needed")
+    return slice(first, last)
 
 
 def path_of(run: Run, grain: int) -> tuple[Floats, Floats, Floats, Floats]:

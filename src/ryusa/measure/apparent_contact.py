@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CaseError, ResultsError
-from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure._run import Floats, Run, frames_between, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -188,9 +188,8 @@ def near_pairs(run: Run, begin: float | None, end: float, resolution: float) -> 
     """Pairs within a resolution at every frame in a window; arguments as of `apparent_contact`."""
     since = settle_time(run) if begin is None else begin
     t = np.asarray(run.frames.t, dtype=np.float64)
-    first, last = int(np.searchsorted(t, since, "left")), int(np.searchsorted(t, end, "right"))
-    if last - first < 2:
-        raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
+    kept = frames_between(t, since, end)
+    first, last = kept.start, kept.stop
     scene = run.scene
     n_id = scene.n_partner
     first_face = np.zeros(0, np.int64)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure._run import Floats, Run, frames_between, settle_time
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.table import Averaged, Averages
-from ryusa.measure.walls import walls
+from ryusa.measure.walls import forces_of_frames
 from ryusa.model.row import RowDam
 from ryusa.results.row import RowFrames
 
@@ -103,15 +103,13 @@ def loads(run: Run, begin: float | None = None, end: float = math.inf, window: f
         )
     since = settle_time(run) if begin is None else begin
     every = np.asarray(frames.t, dtype=np.float64)
-    first, last = int(np.searchsorted(every, since, "left")), int(np.searchsorted(every, end, "right"))
-    if last - first < 2:
-        raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
-    t, row = every[first:last], frames.row
+    kept = frames_between(every, since, end)
+    t, row = every[kept], frames.row
     width = row.column.area / (row.n_segment * row.dx)
     toe = np.array([(row.x_low + one.end * row.dx, row.bottom[one.end - 1]) for one in dams])
-    at = np.array([width * water_on_dam(frames, one)[first:last] for one in dams]).transpose(1, 0, 2)
+    at = np.array([width * water_on_dam(frames, one)[kept] for one in dams]).transpose(1, 0, 2)
     water = 0.5 * (at[1:] + at[:-1])
-    grains, touched = _of_grains(run, dams, toe, float(t[0]), float(t[-1]), water.shape)
+    grains, touched = _of_grains(run, dams, toe, kept, water.shape)
     pushed = water[:, :, 0] != 0.0
     height = np.full(pushed.shape, np.nan)
     np.divide(water[:, :, 3], water[:, :, 0], out=height, where=pushed)
@@ -163,7 +161,7 @@ def water_on_dam(frames: RowFrames, dam: RowDam) -> Floats:
 
 
 def _of_grains(
-    run: Run, dams: list[RowDam], toe: Floats, begin: float, end: float, shape: tuple[int, ...]
+    run: Run, dams: list[RowDam], toe: Floats, kept: slice, shape: tuple[int, ...]
 ) -> tuple[Floats, set[str]]:
     """Load of the grains on each dam, and the dams that are no walls for them."""
     found = np.zeros((*shape[:2], 3))
@@ -171,7 +169,7 @@ def _of_grains(
     missing = {one.name for one in dams} - set(names)
     if len(missing) == len(dams):
         return found, missing
-    of = walls(run, begin, end)
+    of = forces_of_frames(run, kept)  # their account is of a step earlier: times do not serve
     for d, one in enumerate(dams):
         if one.name in missing:
             continue

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure._run import Floats, Run, frames_between, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -91,14 +91,16 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
     """
     if run.scene.walls is None:
         raise ResultsError("the run has no [[walls]]; planes are not measured")
-    names = run.scene.walls.names
     since = settle_time(run) if begin is None else begin
-    every = np.asarray(run.tally["t"], dtype=np.float64)
-    first, last = int(np.searchsorted(every, since, "left")), int(np.searchsorted(every, end, "right"))
-    if last - first < 2:
-        raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
-    t = every[first:last]
-    impulse = np.asarray(run.walls, dtype=np.float64).reshape(len(every), len(names), N_IMPULSE)[first:last]
+    return forces_of_frames(run, frames_between(np.asarray(run.tally["t"]), since, end))
+
+
+def forces_of_frames(run: Run, kept: slice) -> WallForces:
+    """`walls` from one given frame to another; the run has walls."""
+    assert run.scene.walls is not None
+    names, every = run.scene.walls.names, np.asarray(run.tally["t"], dtype=np.float64)
+    t = every[kept]
+    impulse = np.asarray(run.walls, dtype=np.float64).reshape(len(every), len(names), N_IMPULSE)[kept]
     dt = np.diff(t)
     rate = np.diff(impulse, axis=0) / dt[:, None, None]
     window = (float(t[0]), float(t[-1]))
@@ -108,7 +110,7 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
         for k, (quantity, unit) in enumerate(_QUANTITIES)
         if np.any(rate[:, w, k] != 0.0)
     ]
-    travel = np.asarray(run.wall_travel, dtype=np.float64)[first:last]
+    travel = np.asarray(run.wall_travel, dtype=np.float64)[kept]
     now = scene_at(run, window[0]).walls or run.scene.walls
     found = WallForces(
         0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6],
