@@ -75,8 +75,6 @@ STATE_E, OVERLAP_E, CLOSING_E, F_N_E = (EVENT + k * PITCH for k in range(4))
 MASS_E, ETA_N_E, K_N_E, WAY_E, AFTER_E = (EVENT + k * PITCH for k in range(4, 9))
 MASS_S_E, K_S_E, ETA_S_E = (EVENT + k * PITCH for k in range(9, 12))
 SPRING_E, SHEAR_E, SLIP_E = EVENT + 12 * PITCH, EVENT + 15 * PITCH, EVENT + 18 * PITCH  # three rows each
-NORMAL_E = EVENT + 21 * PITCH  # three rows
-ARM_E = EVENT + 24 * PITCH  # of i and of j
 # in their place the answers
 PUSH_E, SPENT_E, SLID_E, WHEN_E = (
     EVENT + 26 * PITCH,

@@ -163,15 +163,6 @@ def grids_by_size(
 
 
 @inner(forceinline=True)
-def _neighbour_cell(c: int, step: int, n: int, periodic: bool) -> int:
-    # index along one axis of a cell one step from cell c, or -1; in few periodic cells each comes once
-    a = c + step
-    if periodic:
-        return -1 if (n == 1 and step != 0) or (n == 2 and step < 0) else (a + n) % n
-    return a if 0 <= a < n else -1
-
-
-@inner(forceinline=True)
 def _append_partners(
     i: int, offset: int, level: int, levels: Any, x: Any, ids: Any, period: Any, skin: float,
     plane_case: bool, body: Any, partners: Any, used: int,

@@ -24,7 +24,6 @@ G_HIGH = 5
 G_CORNER = 8
 G_WIDTH = 11
 G_REACH = 14
-N_GRID = 15
 
 _set_springs, _normal_kicks = on_device(set_springs), on_device(normal_kicks)
 
