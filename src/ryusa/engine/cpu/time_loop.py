@@ -118,9 +118,8 @@ def run(
 
     `film_reach` is that of films [m], 0 without. `held` is the same for all threads but for its `spare`; its
     `faces` and `bodies` are arguments too, as `shear` and `advance` are, so that what a scene goes without is
-    not compiled. With exact
-    timing a step has two halves, kicks and shears, and a list of pairs that is renewed is so between them:
-    `kicked` tells whether the first half is done.
+    not compiled. With exact timing a step has two halves, kicks and shears, and a list of pairs that is
+    renewed is so between them: `kicked` tells whether the first half is done.
     """
     # One function: split into four, W1 and W2 at 2,000 grains took 1 % longer (design/lab/0005)
     held, work, moving = borrow(held), borrow(work), borrow(faces)

@@ -57,6 +57,11 @@ class ObservedValue:
     error: float
     discrepancy: float = 0.0
 
+    @property
+    def width(self) -> float:
+        """Standard deviation of the observation about the mean of the model."""
+        return math.hypot(self.error, self.discrepancy)
+
 
 @dataclass(frozen=True)
 class Observation:
