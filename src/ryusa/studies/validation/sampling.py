@@ -122,6 +122,7 @@ CLOSED: Mapping[str, str] = {
     "impact": "one grain, at twenty given phases of the time step",
     "hertz": "one grain or two, at twenty given phases of the time step",
     "hertz_oblique": "one grain",
+    "hertz_pairs": "two grains",
     "rebound": "one grain",
     "rolling": "one grain",
 }

@@ -21,6 +21,7 @@ NAMES = (
     "impact",
     "hertz",
     "hertz_oblique",
+    "hertz_pairs",
     "rebound",
     "rolling",
     "gas",
