@@ -174,6 +174,25 @@ def test_arrays_give_the_scene_of_the_same_case(elastic: bool) -> None:
     assert scene_digest(alike) == scene_digest(replace(by_case, events=EventRule.ALL))
 
 
+def test_a_law_keeps_its_own_dashpots_where_materials_ask_for_no_other_restitution() -> None:
+    """Dashpots that no restitution gives are kept; another restitution of a material makes its own."""
+    law = elastic_spheres(1.0, 0.01, youngs_modulus=1.0e7, speed=0.1, restitution=0.7)
+    own = replace(law, zeta_n=0.5 * law.zeta_n, zeta_s=0.0)
+    made, _ = build.scene(
+        [[0.0, 0.0, 0.1], [0.0, 0.0, 0.2]], 0.02, contact=own, dt=1.0e-5,
+        materials=[build.Material("light", density=1200.0), build.Material("dull", restitution=0.5)],
+        pairs=[build.MaterialPair(("light", "dull"), restitution=0.7)],
+        made_of={"grains": ["light", "dull"]},
+    )  # fmt: skip
+    assert made.materials is not None
+    names, n = made.materials.names, len(made.materials.names)
+    light, dull = names.index("light"), names.index("dull")
+    both, other = made.materials.contact[light * n + dull], made.materials.contact[dull * n + dull]
+    assert (both.zeta_n, both.zeta_s) == (own.zeta_n, own.zeta_s)
+    assert other.zeta_n > law.zeta_n
+    assert other.zeta_s > 0.0
+
+
 def test_the_step_is_that_of_the_stiffest_pair_that_meets() -> None:
     keys = {"x": [[0, 0, 0.01], [0, 0, 0.02]], "d": D, "planes": [("floor", (0, 0, 0), (0, 0, 1))]}
     plain, _ = build.scene(**keys)

@@ -285,9 +285,14 @@ def _law(
     e_n = values["restitution"]
     e_s = e_n if contact.e_s == contact.e_n else contact.e_s
     made = replace(
-        contact, mu=values["friction"], adhesion_amount=values["adhesion_amount"], e_n=e_n, e_s=e_s,
-        zeta_n=collision.zeta_for_restitution(e_n, contact.tension), zeta_s=collision.zeta_tension(e_s),
-    )  # fmt: skip
+        contact, mu=values["friction"], adhesion_amount=values["adhesion_amount"], e_n=e_n, e_s=e_s
+    )
+    # A law of one's own may have dashpots that its restitutions do not give; materials that do not ask for
+    # another restitution keep them.
+    if e_n != contact.e_n:
+        made = replace(made, zeta_n=collision.zeta_for_restitution(e_n, contact.tension))
+    if e_s != contact.e_s:
+        made = replace(made, zeta_s=collision.zeta_tension(e_s))
 
     def own(key: str, base: float) -> tuple[float, float]:
         found = [getattr(by_name.get(name), key, None) for name in (a, b)]
