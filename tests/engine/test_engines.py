@@ -173,9 +173,11 @@ def test_it_finds_every_pair_that_a_search_of_all_pairs_finds(create, seed):
     for _ in range(3):
         before = engine.state()
         engine.advance(1).raise_if_any()
-        after = engine.state().contacts
-        expected = touching_pairs(fixed, before)
-        assert set(zip(after.i, after.j, strict=True)) == expected
+        after = engine.state()
+        expected, found = touching_pairs(fixed, before), after.contacts
+        begun = set(zip(found.i, found.j, strict=True)) - expected
+        assert expected <= set(zip(found.i, found.j, strict=True))
+        assert begun <= touching_pairs(fixed, after)  # with exact timing, contacts begin within the step
         assert len(expected) > 10
         engine.advance(4).raise_if_any()
 

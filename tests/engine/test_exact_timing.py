@@ -260,3 +260,21 @@ def test_a_grain_that_leaves_faster_than_the_list_reaches_has_its_contact_closed
     engine.load(built.scene, built.state)
     assert not engine.advance(round(0.00784906 / built.scene.dt))
     assert len(engine.state().contacts.i) == 0
+
+
+@pytest.mark.parametrize("partner", ["plane", "grain"])
+def test_a_grain_pushed_off_from_rest_meets_what_it_touches_within_the_first_step(partner):
+    gate, back = ("gate", (0.499 * D, 0, 0), (-1, 0, 0)), ("back", (-0.5 * D, 0, 0), (1, 0, 0))
+    planes, fixed_grains = ([gate, back], None) if partner == "plane" else ([gate], [[-D, 0.0, 0.0]])
+    moves = []
+    for speed in (0.0, -1.0e-3):  # at rest, nothing tells before the kick how far a grain will go
+        fixed, first = scene(
+            [[0.0, 0.0, 0.0]], D, planes=planes, x_fixed=fixed_grains, v=[[speed, 0.0, 0.0]], gravity=0.0,
+            allow_overlap=True, timing=ContactTiming.EXACT,
+        )  # fmt: skip
+        engine = CpuEngine()
+        engine.load(fixed, first)
+        engine.advance(1).raise_if_any()
+        assert len(engine.state().contacts) == 2
+        moves.append(engine.state().v[0, 0])
+    assert moves[0] == pytest.approx(moves[1], rel=0.1)

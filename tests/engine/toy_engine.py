@@ -152,7 +152,7 @@ class ToyEngine:
         rows = [np.concatenate(one, axis=None) for _, one in sorted(self._pairs.items())]
         rows, k = np.array(rows).reshape(-1, 9), len(rows)
         parts = rows[:, :3], rows[:, 3:6], rows[:, 7], rows[:, 6], np.zeros((k, 3)), np.zeros((k, 3))
-        exact = np.zeros(k), np.ones(k, np.int64), np.zeros(k), np.zeros(k)
+        exact = np.zeros(k), np.ones(k, np.int64), np.zeros(k)
         contacts = Contacts(i, j, *parts, rows[:, 8], *exact, np.zeros((k, EVENT.itemsize // 8)))
         make_read_only(state := replace(self.grains(), contacts=contacts, tally=self._state.tally))
         return state

@@ -175,6 +175,9 @@ def run(
             if stop != STOP_DONE:
                 break
             ahead = AHEAD * fastest * dt
+            reach = 2.0 * ahead  # after the kicks, which may have set grains going that were at rest
+            if faces is not None:
+                reach += REACH * moving.speed * dt
         if 2.0 * (travel + ahead) > skin:
             stop = STOP_LIST
             break
