@@ -133,7 +133,7 @@ def test_gentle_and_porous_reaches_and_light_grains_have_no_estimate() -> None:
     gentle = rows(more={"water.row.bottom": "[['0 m', '0.004 m'], ['2 m', '0 m']]", "water.row.dams": "[]",
                         "feeds": "[]", "build.bed": "'5 mm'"})  # fmt: skip
     assert gentle["capacity, x = 0 to 2 m"].value == "not known"
-    light = rows(more={"grains.density": "'900 kg/m3'"})
+    light = rows(more={"grains.density": "'900 kg/m3'", "grains.buoyant": "true"})
     assert not [name for name in light if name.startswith(("capacity", "Shields number", "time to fill"))]
 
 

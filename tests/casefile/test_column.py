@@ -102,7 +102,8 @@ def test_the_exponent_of_richardson_and_zaki_is_that_of_a_single_grain(case: Cas
     assert hindrance_exponent(one) == hindrance.exponent_rowe(re)
     assert 2.3 < hindrance_exponent(one) < 2.6  # coarse grains
     assert hindrance_exponent(wet(case, "hindrance = 'Richardson-Zaki', hindrance_exponent = 3.1")) == 3.1
-    floating = wet(case, "hindrance = 'Richardson-Zaki', density = '3 g/cm3'")
+    light = {"grains.buoyant": "true"}
+    floating = wet(case, "hindrance = 'Richardson-Zaki', density = '3 g/cm3'", **light)
     assert hindrance_exponent(floating) == hindrance.exponent_rowe(0.0)
 
 

@@ -61,6 +61,8 @@ class GrainsSection(Section):
     diameter of u_star, roughness, overlap/d and fixed grains, in a sieve_curve D50 when not given."""
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
+    buoyant: bool = False
+    """true: grains may be lighter than the water, and rise, as pumice does."""
     spread: Spread = 0.0
     """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""
     sieve_curve: (

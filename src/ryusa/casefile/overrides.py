@@ -17,9 +17,19 @@ def parsed(text: str) -> dict[str, Any]:
 
 
 def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
-    """Data of the file with dotted keys set; a key displaces the other way to give the same thing."""
+    """Data of the file with dotted keys set; a key displaces the other way to give the same thing.
+
+    Raises
+    ------
+    CaseError : both ways are set, no key with dots, or a way through what is no table.
+    """
     if not overrides:
         return data
+    for section, pairs in RIVALS.items():
+        for one, other in pairs:
+            if {f"{section}.{one}", f"{section}.{other}"} <= set(overrides):
+                text = f"excludes --set {section}.{other}; give only one of the two"
+                raise CaseError(f"--set {section}.{one}", None, text)
     data = copy.deepcopy(data)
     for key, text in overrides.items():
         _set(data, key, _toml_value(text))

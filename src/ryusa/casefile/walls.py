@@ -21,6 +21,7 @@ from ryusa.casefile.quantities import (
     Speed,
     Spin,
 )
+from ryusa.casefile.row.meshes import check_meshes_in_row, dam_rows
 from ryusa.casefile.row.values import walls_of_stream
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section, given
@@ -219,6 +220,10 @@ def check_meshes(case: "Case", derived: "Derived") -> Iterator[CaseError]:
             )  # fmt: skip
         elif not _moves(case, wall):
             yield from _out_of_reach(case, wall, key, low, high)
+            if wall.shape == "mesh":
+                yield from check_meshes_in_row(
+                    case, [(f"{key}.file", wall.unit or "", low, high)], derived.d_max
+                )
 
 
 def _moves(case: "Case", wall: WallSection) -> bool:
@@ -293,7 +298,11 @@ def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         rows += belt_rows(case, wall)
         if wall.servo is not None:
             rows.append(word("walls", f"{wall.name}: presses with", servo_text(wall.servo), "servo"))
-    return rows
+    meshes = [
+        (f"walls.{wall.name}", wall.unit or "", *box_of(case, wall, f"walls.{k}"))
+        for k, wall in enumerate(case.walls) if wall.shape == "mesh"
+    ]  # fmt: skip
+    return rows + dam_rows(case, meshes, derived.d_max)
 
 
 def _motion_text(wall: WallSection) -> str:

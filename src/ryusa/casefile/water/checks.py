@@ -4,9 +4,13 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.builders.table import lightest_in_file
 from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass
+from ryusa.casefile.materials import density
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import KEY as SHAPE
 from ryusa.casefile.shape import has_clumps, shapes_of
 from ryusa.casefile.water.values import drag_coefficient, terminal_velocity
@@ -24,6 +28,8 @@ def check_water(case: "Case") -> Iterator[CaseError]:
     """Find keys of the water that are missing or contradict each other."""
     water = case.water
     if water is None:
+        if case.grains.buoyant:
+            yield CaseError("grains.buoyant", True, "has no effect without [water]")
         return
     takes = Profile.of(water.profile).takes
     shear = water.tau_star is not None or water.u_star is not None
@@ -42,6 +48,33 @@ def check_water(case: "Case") -> Iterator[CaseError]:
         yield CaseError("water.drag_of_form", water.drag_of_form, f"has no effect without clumps ({SHAPE})")
     if water.torque != "none" and not may_rotate(case):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
+    yield from _that_floats(case, water.density)
+    if water.depth is not None and not stream(case) and water.depth < (d := reference_diameter(case)):
+        yield CaseError(
+            "water.depth", water.depth, f"covers no grain: at least their diameter, {d:.4g} m, is needed, "
+            "since drag and buoyancy are those of immersed grains",
+        )  # fmt: skip
+
+
+def _that_floats(case: "Case", of_water: float) -> Iterator[CaseError]:
+    """Find grains lighter than the water that nobody asked for, or the word for them where all sink."""
+    own = {"grains.density": case.grains.density}
+    own |= {f"materials.{name}.density": density(case, name) for name in case.materials}
+    lightest = min(own, key=lambda key: own[key])
+    rho, key = own[lightest], lightest
+    try:
+        of_file = lightest_in_file(case).grains.density
+    except CaseError:  # reported with the file
+        of_file = math.inf
+    if of_file < rho:
+        rho, key = of_file, "build.file"
+    if rho < of_water and not case.grains.buoyant:
+        yield CaseError(
+            key, rho, f"is lighter than the water, {of_water:g} kg/m3, so that such grains rise and float; "
+            "say grains.buoyant = true if they are meant to, or mend the density (quartz 2650 kg/m3)",
+        )  # fmt: skip
+    elif case.grains.buoyant and rho >= of_water:
+        yield CaseError("grains.buoyant", True, "has no effect: no grain is lighter than the water")
 
 
 def check_drag_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
