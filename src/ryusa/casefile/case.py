@@ -83,6 +83,19 @@ class Case(Section):
         """Name for folders: that of the file without its ending."""
         return self._path.stem if self._path is not None else "case"
 
+    def __repr__(self) -> str:
+        water = "dry" if self.water is None else f"water '{self.water.profile}'"
+        stop = ", ".join(f"{key} = {value:g}" for key, value in self.stop if isinstance(value, float | int))
+        parts = [f"builder '{self.build.kind}'", water, f"stop at {stop}", f"seed {self.seed}"]
+        parts += [
+            f"{len(held)} {name}" for name in ("walls", "feeds", "exits") if (held := getattr(self, name))
+        ]
+        changed = f"; changed: {', '.join(self._overrides)}" if self._overrides else ""
+        return f"Case '{self.title}' ({self._path or 'given as text'}: {', '.join(parts)}{changed})"
+
+    def __str__(self) -> str:
+        return repr(self)
+
     def _repr_html_(self) -> str:
         rows = load("ryusa.casefile.explain:explain")(self)
         return html_table(

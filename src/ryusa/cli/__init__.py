@@ -4,6 +4,7 @@ import gc
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -81,4 +82,15 @@ for _family in _FAMILIES:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; `arguments` default to those of the process."""
     gc.set_threshold(OBJECTS)
-    app(args=sys.argv[1:] if arguments is None else list(arguments), prog_name="ryusa")
+    given = sys.argv[1:] if arguments is None else arguments
+    app(args=[at_home(one) for one in given], prog_name="ryusa")
+
+
+def at_home(argument: str) -> str:
+    """An argument with its leading ~ as the home folder, which a shell leaves as it is within quotes.
+
+    >>> at_home("--output=~/x") == f"--output={Path.home() / 'x'}", at_home("a~/b")
+    (True, 'a~/b')
+    """
+    option, equals, path = argument.partition("=") if argument.startswith("--") else ("", "", argument)
+    return f"{option}{equals}{Path(path).expanduser()}" if path == "~" or path.startswith("~/") else argument

@@ -1,7 +1,8 @@
 """Options of `ryusa measure` and `ryusa draw`: those that were typed, checked, as keywords of a function."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from inspect import cleandoc
+from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -35,6 +36,21 @@ OF_ROW = {  # help of the options that measures and pictures of a row of columns
     "upstream, or the whole row.",
     "reach": "another reach, such as '0.5 m to 2 m', instead of that behind a dam.",
 }
+
+
+def refuse_swapped(
+    command: str, run: Path, what: Sequence[str], entries: Sequence[MeasureEntry] | Sequence[PictureEntry]
+) -> None:
+    """Say that the run comes first, where it was given after what is asked of it.
+
+    Raises
+    ------
+    CaseError : `run` is the name of an entry and no folder, and one of `what` is a folder.
+    """
+    folders = [one for one in what if Path(one).is_dir()]
+    if folders and str(run) in {one.name for one in entries} and not run.is_dir():
+        asked = " ".join([str(run), *(one for one in what if one not in folders)])
+        raise CaseError(command, None, f"the run comes first: ryusa {command} {folders[0]} {asked}")
 
 
 def entry_of(what: str, entries: tuple[Entry, ...], key: str) -> Entry:

@@ -8,7 +8,7 @@ import typer
 
 from ryusa.catalogue import BEDS, MEASURES, PICTURES, QUANTITIES, SIDES, PictureEntry, called, load
 from ryusa.cli import chosen
-from ryusa.cli.chosen import entry_of, keywords, listed, of_row, taking
+from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -149,6 +149,7 @@ def draw(
 
     An option that one of them does not take is an error, and nothing is drawn.
     """
+    refuse_swapped("draw", run, what, PICTURES)
     results = open_run(run)
     entries = [entry_of(one, PICTURES, "draw") for one in dict.fromkeys(what)]
     if csv is not None and len(entries) > 1:

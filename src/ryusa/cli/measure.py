@@ -11,7 +11,7 @@ import typer
 
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import chosen
-from ryusa.cli.chosen import entry_of, keywords, listed, of_row, taking
+from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
 from ryusa.cli.options import in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -172,6 +172,7 @@ def measure(
     window in time and whether the record is steady. An option that a measure
     does not take is an error.
     """
+    refuse_swapped("measure", runs[0], [what], MEASURES)
     entry = entry_of(what, MEASURES, "measure")
     opened = [open_run(run) for run in runs]
     records: list[Any] = []

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.measure._run import Floats, Run, crest_of, path_of
 from ryusa.model import Scene
+from ryusa.printed import ByShape
 
 # One row per hop: from the landing that begins one bounce to the landing that begins the next.
 HOP = np.dtype(
@@ -53,8 +54,8 @@ BOUNCE = np.dtype(
 )
 
 
-@dataclass(frozen=True)
-class Bounces:
+@dataclass(frozen=True, repr=False)
+class Bounces(ByShape):
     """Hops and bounces of one grain, in order of time."""
 
     hops: NDArray[Any]  # dtype HOP
@@ -73,8 +74,8 @@ class _Flight:
     z_top: float
 
 
-@dataclass(frozen=True)
-class PathOverBed:
+@dataclass(frozen=True, repr=False)
+class PathOverBed(ByShape):
     """All hops and bounces of one grain, with the bed contacts of each bounce that a hop leaves."""
 
     hops: NDArray[Any]  # dtype HOP

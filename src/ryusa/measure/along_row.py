@@ -12,14 +12,15 @@ from ryusa.laws.slices import sphere_slice
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.profiles import CHUNK
 from ryusa.model import ColumnRow
+from ryusa.printed import ByShape
 from ryusa.results.row import RowFrames
 
 Ints = NDArray[np.int64]
 SLOW = 0.1  # speed below which a grain rests, over sqrt(g d), as in `measure.entrainment`
 
 
-@dataclass(frozen=True)
-class GrainsAlongRow:
+@dataclass(frozen=True, repr=False)
+class GrainsAlongRow(ByShape):
     """Free grains of a row of columns at some frames, per width.
 
     Attributes

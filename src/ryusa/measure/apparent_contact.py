@@ -12,6 +12,7 @@ from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model.scene import EventRule
+from ryusa.printed import ByShape
 from ryusa.results.touching import touching_pairs
 
 FPS = 250.0  # frames of a film per second
@@ -22,8 +23,8 @@ HALF = 0.5  # a stay cut after n frames lasts n or more; it counts as cut this m
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class NearPairs:
+@dataclass(frozen=True, repr=False)
+class NearPairs(ByShape):
     """Pairs of grains within a resolution at frames of a run.
 
     Attributes
@@ -50,8 +51,8 @@ class NearPairs:
         return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
 
 
-@dataclass(frozen=True)
-class Stays:
+@dataclass(frozen=True, repr=False)
+class Stays(ByShape):
     """Times during which pairs are within a resolution, in order of their begin; one entry per stay.
 
     Attributes
@@ -111,7 +112,7 @@ class Stays:
         return np.asarray(found.quantiles), np.asarray(found.probabilities)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ApparentContact(Averaged):
     """Contact as a film shows it.
 

@@ -35,7 +35,7 @@ class ContactTimes:
     damped: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Collisions(Averaged):
     """Contacts that ended within the window, one entry per contact in every array.
 

@@ -10,6 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.repose import surface
 from ryusa.measure.snapshot import snapshot
+from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
 
@@ -19,8 +20,8 @@ SECTORS = 8  # sides of the heap, whose scatter gives the error
 LEAST = 3  # rings in a fit
 
 
-@dataclass(frozen=True)
-class Cone:
+@dataclass(frozen=True, repr=False)
+class Cone(ByShape):
     """Surface of a heap with a round foot at one moment. Angles in radians, heights above the floor.
 
     Attributes

@@ -13,6 +13,7 @@ from ryusa.model import Scene
 from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Bools
 from ryusa.model.wall_contacts import away_from_surfaces, shares_of_contacts
+from ryusa.printed import ByShape
 from ryusa.results.touching import touching_pairs
 
 AT_LIMIT = 1.0e-6  # relative round-off of a tangential force that was shortened to tau_c
@@ -20,8 +21,8 @@ AT_LIMIT = 1.0e-6  # relative round-off of a tangential force that was shortened
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class ContactNetwork:
+@dataclass(frozen=True, repr=False)
+class ContactNetwork(ByShape):
     """Contacts at one moment, in one lane of a plane scene or one slice of a scene in 3D.
 
     Attributes

@@ -24,7 +24,7 @@ FLAT = 1.0e-6  # branch vectors flatter than this, in lengths of coarse graining
 BLOCK = 2_000  # contacts or grains taken at once
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ContactStress(Averaged):
     """Stress over height, mean over time, along the bed and across; pressure is positive.
 

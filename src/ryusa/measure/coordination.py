@@ -13,7 +13,7 @@ from ryusa.measure.table import Averaged, Averages
 from ryusa.results.touching import contacts_per_grain
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Coordination(Averaged):
     """Contacts per free grain.
 

@@ -20,7 +20,7 @@ from ryusa.spelling import known_word, nearest_word
 FEWEST = 3  # segments with a deposit to which a line is fitted
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Deposit(Averaged):
     """Grains in a reach of a row and the line of their bed at each frame; arrays of shape (n_frame,).
 

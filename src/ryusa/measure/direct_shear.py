@@ -19,7 +19,7 @@ LAST = 0.5  # share of the displacement that counts as residual
 LEAST = 8  # frames in the window
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DirectShear(Averaged):
     """One half of a box, drawn along under the other.
 

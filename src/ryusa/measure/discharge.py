@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 ENTERED, LEFT = "rate_in", "rate_out"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Discharge(Averaged):
     """What passed feeds and exits, at the frames of a window; mass and number balance at every frame.
 

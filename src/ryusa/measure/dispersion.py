@@ -17,7 +17,7 @@ HALF = 0.5  # of the longest lag: where the fit begins
 UNEVEN = 0.01  # by which the time between two frames may differ
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Dispersion(Averaged):
     """Mean squared displacement of the free grains about the mean motion.
 

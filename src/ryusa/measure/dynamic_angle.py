@@ -18,7 +18,7 @@ LEAST = 4  # bins in a fit
 LEVEL = 1.0e-6  # component along gravity up to which the axis of a drum is level
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DynamicAngle(Averaged):
     """Inclination of the grains in a drum, positive where they are carried up.
 

@@ -8,6 +8,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
+from ryusa.printed import ByShape
 
 TERMS = {
     "kinetic": "kinetic",
@@ -34,8 +35,8 @@ TERMS = {
 }  # key of a term -> what it is, as printed and drawn
 
 
-@dataclass(frozen=True)
-class Energy:
+@dataclass(frozen=True, repr=False)
+class Energy(ByShape):
     """Terms of the account at each frame [J], each of shape (n_frame,).
 
     Attributes

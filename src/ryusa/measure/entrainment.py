@@ -17,7 +17,7 @@ SPEED = 0.1  # speed from which a grain moves, over sqrt(g d)
 DURATION = 1.0  # time for which it must, over sqrt(d/g)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Entrainment(Averaged):
     """Grains that start and stop moving.
 

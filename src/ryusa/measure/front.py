@@ -18,7 +18,7 @@ FAR = 5.0  # distance from its first place from which a grain counts, in mean di
 SHARE = 0.05  # of the volume, beyond the front
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Front(Averaged):
     """Front of the grains that have moved, at each frame; arrays of shape (n_frame,).
 

@@ -16,7 +16,7 @@ from ryusa.results.row import RowFrames
 SHARES = (0.95, 0.99)  # of the time in which a load stays below a percentile
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Loads(Averaged):
     """Loads on dams, for the whole width of the stream; means from frame to frame.
 

@@ -17,6 +17,7 @@ from ryusa.measure.table import lines
 from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
+from ryusa.printed import ByShape
 from ryusa.results.row import RowFrames
 from ryusa.spelling import known_word
 
@@ -29,17 +30,15 @@ _WATER = (
     "tau",
 )  # fmt: skip
 _GRAINS = ("volume", "solid_discharge", "transport_concentration", "concentration")
+_LENGTHS = ("x", "bottom", "floor", "bed", "bed_change", "surface", "depth", "critical", "energy", "volume")
 _UNITS = {  # as parts of the names of columns; none: without a unit
-    **dict.fromkeys(
-        ("x", "bottom", "floor", "bed", "bed_change", "surface", "depth", "critical", "energy", "volume"),
-        "_m",
-    ),
+    **dict.fromkeys(_LENGTHS, "_m"),
     "t": "_s", "speed": "_m_per_s", "discharge": "_m2_per_s", "solid_discharge": "_m2_per_s", "tau": "_Pa",
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class LongSection:
+@dataclass(frozen=True, repr=False)
+class LongSection(ByShape):
     """Water and grains of a row by segment, at one moment or as means; arrays of shape (n_segment,).
 
     Attributes
@@ -255,8 +254,8 @@ def _errors_of_ratios(
         }
 
 
-@dataclass(frozen=True)
-class DepthHistory:
+@dataclass(frozen=True, repr=False)
+class DepthHistory(ByShape):
     """A row over distance and time; arrays of shape (n_frame, n_segment).
 
     Attributes

@@ -19,7 +19,7 @@ LEVEL = 1.0e-6  # component along gravity up to which an axis is level
 SLACK = 1.0e-3  # by which a window may fall short of whole turns: frames are at whole steps
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Mill(Averaged):
     """Torque and power of a shell and all that turns with it.
 

@@ -14,14 +14,15 @@ from ryusa.measure.statistics import Average, average, ratio
 from ryusa.measure.steadiness import BLOCKS
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model.traffic import IN, NONE, OUT, Population
+from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
 SEEN = 400  # instants of the window at which debts are given
 _SLACK = 1.0e-6  # of an interval between two instants, for a time that is one of them
 
 
-@dataclass(frozen=True)
-class Gate:
+@dataclass(frozen=True, repr=False)
+class Gate(ByShape):
     """A feed or an exit: what passed it within a window.
 
     Attributes
@@ -51,7 +52,7 @@ class Gate:
         return f"{'in' if self.way == IN else 'out'} by {self.name}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Passages(Averaged):
     """Grains that entered and left within a window, each as one row; a clump is one grain.
 

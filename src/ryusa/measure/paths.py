@@ -28,7 +28,7 @@ Ints = NDArray[np.int64]
 TurnRule = Literal["contacts", "heights"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Paths(Averaged):
     """Paths of grains within consecutive windows; arrays are (n_window, n_grain).
 

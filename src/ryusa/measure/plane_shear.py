@@ -21,7 +21,7 @@ CORE = (0.2, 0.8)  # shares of the volume of the grains below and above which pl
 LEAST = 4  # layers in the core
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlaneShear(Averaged):
     """Steady shear of grains between a base and a lid.
 

@@ -14,14 +14,15 @@ from ryusa.measure.statistics import average, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
+from ryusa.printed import ByShape
 
 CHUNK = 400_000  # places of grains held in memory at once
 MOST = 100_000  # layers; more come from a grain that was thrown away
 V, A, U_X, U_Z, SPIN, U_XX, U_ZZ = range(7)  # what is summed over the slices in a layer
 
 
-@dataclass(frozen=True)
-class Layers:
+@dataclass(frozen=True, repr=False)
+class Layers(ByShape):
     """One quantity over height, with the standard error of its mean over time.
 
     Attributes
@@ -37,7 +38,7 @@ class Layers:
     error: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Profiles(Averaged):
     """Means over a time window in layers parallel to the bed.
 

@@ -13,6 +13,7 @@ from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, scene_at, snapshot
 from ryusa.model import Scene
 from ryusa.model.near_pairs import near_pairs
+from ryusa.printed import ByShape
 from ryusa.spelling import known_word
 
 FIT = (0.15, 0.85)  # of the heap's height
@@ -27,8 +28,8 @@ G = 9.80665  # [m/s2], where the case has no gravity
 Side = Literal["right", "left"]
 
 
-@dataclass(frozen=True)
-class HeapSurface:
+@dataclass(frozen=True, repr=False)
+class HeapSurface(ByShape):
     """Free surface of a heap at one moment. Angles in radians, heights above z = 0.
 
     Attributes

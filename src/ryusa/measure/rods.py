@@ -15,6 +15,7 @@ from ryusa.measure.transport import window_of
 from ryusa.model import Scene
 from ryusa.model.near_pairs import near_pairs
 from ryusa.model.scene import Bools
+from ryusa.printed import ByShape
 
 LASTS = 5.0  # a window lasts so long, over sqrt(d/g)
 WAY = 1.0  # a mover goes at least so far along the bed in it, over mean d
@@ -42,8 +43,8 @@ class _Criteria:
     gap: float
 
 
-@dataclass(frozen=True)
-class _Seen:
+@dataclass(frozen=True, repr=False)
+class _Seen(ByShape):
     """Movers of one window: centres (n_frame, n, 3) [m], pairs that touch at its begin, diameters, layers."""
 
     x: Floats
@@ -52,7 +53,7 @@ class _Seen:
     layer: Ints
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Rods(Averaged):
     """Moving grains that keep contact and bearing throughout a window of time.
 

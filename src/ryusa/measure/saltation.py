@@ -18,7 +18,7 @@ RISE = 0.1  # in diameters: a flight that rises less belongs to one bounce
 RISES = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Saltation(Averaged):
     """Everything about the hops of a run.
 

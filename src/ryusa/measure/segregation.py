@@ -15,7 +15,7 @@ from ryusa.model.scene import Bools
 EQUAL = 1.0e-9  # sizes that differ by less than this share are the same
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Segregation(Averaged):
     """Heights of the centres of mass of large and of small grains.
 

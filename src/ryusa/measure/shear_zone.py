@@ -27,7 +27,7 @@ FAINTEST = 0.05  # share of the rate of the disc with which the surface must tur
 LEVEL = 1.0e-6  # sine of the angle up to which a direction is upright
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ShearZone(Averaged):
     """Where grains between a turning and a resting part of the floor are sheared.
 

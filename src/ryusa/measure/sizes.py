@@ -12,14 +12,15 @@ from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
 from ryusa.model.arrays import Bools
 from ryusa.model.grading import SHARES, Grading, GradingFault, laid
+from ryusa.printed import ByShape
 from ryusa.spelling import nearest_word
 
 OWN_SIZES = ("diameter", "spread", "sieve_curve")  # keys of a material of the case
 HALF_PHI = math.sqrt(2.0)  # ratio of the sieves where the case asks for no curve
 
 
-@dataclass(frozen=True)
-class Sizes:
+@dataclass(frozen=True, repr=False)
+class Sizes(ByShape):
     """Sizes by mass of the free grains at the start of a run.
 
     Attributes

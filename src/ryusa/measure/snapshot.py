@@ -10,6 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
 from ryusa.model.wall_shape import in_world, lines_of
+from ryusa.printed import ByShape
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
 SHARE = (
@@ -38,8 +39,8 @@ class Bounds:
     spin: float
 
 
-@dataclass(frozen=True)
-class Snapshot:
+@dataclass(frozen=True, repr=False)
+class Snapshot(ByShape):
     """Grains at one moment.
 
     Attributes

@@ -15,7 +15,7 @@ from ryusa.measure.table import Averaged, Averages
 TURN = 2.0 * math.pi
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Spin(Averaged):
     """Spin about y of every free grain; positive rolls downstream.
 

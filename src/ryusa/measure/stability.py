@@ -19,6 +19,7 @@ from ryusa.laws.contact import damping
 from ryusa.laws.drag import added_mass, volume
 from ryusa.laws.hertz import modulus_for_stiffness, stiffness_hertz_for_overlap
 from ryusa.measure._run import Floats
+from ryusa.printed import ByShape
 
 BAND = (0.001, 0.01)  # largest overlap over diameter: stiffer costs steps, softer trembles (Fig. 11)
 A_3 = math.pi / 6.0
@@ -155,8 +156,8 @@ def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: floa
     )
 
 
-@dataclass(frozen=True)
-class Chart:
+@dataclass(frozen=True, repr=False)
+class Chart(ByShape):
     """Contact time and overlap of several diameters over a range of stiffness.
 
     Attributes

@@ -23,7 +23,7 @@ DRIFTS = 1.0  # drift that is named where a record changes, in standard errors o
 APART = 0.95  # starts differ where chance explains less than the rest
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Average:
     """A mean and how far to trust it.
 
@@ -69,6 +69,12 @@ class Average:
     def steady(self) -> bool:
         """True where a record that is long enough shows no change."""
         return not self.short and self.variation <= LIMIT
+
+    def __repr__(self) -> str:
+        error = "" if math.isnan(self.error) else f" ± {self.error_text}"
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        steady = "" if self.verdict in {"-", "yes"} else f", steady: {self.verdict}"
+        return f"{self.name}: {self.value:.4g}{error}{unit} (n = {self.n}{steady})"
 
     @property
     def error_text(self) -> str:

@@ -4,7 +4,7 @@ import csv
 import html
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,15 @@ from numpy.typing import NDArray
 
 from ryusa.measure.statistics import STAR, Average
 from ryusa.notebook import html_table
+from ryusa.printed import short, text_table
 
 ROUND_OFF = 1.0e-12  # of the largest number of a column, below which a printed one is 0
 
 
-@dataclass(frozen=True)
+_HEADS = ("quantity", "value", "± s.e.", "unit", "n", "window (s)", "steady")
+
+
+@dataclass(frozen=True, repr=False)
 class Averages:
     """A list of averages that can be asked by name, printed and written."""
 
@@ -31,9 +35,11 @@ class Averages:
                 return one
         raise KeyError(f"{name!r}; there are: {', '.join(one.name for one in self.items)}")
 
-    def _repr_html_(self) -> str:
-        heads = ("quantity", "value", "± s.e.", "unit", "n", "window (s)", "steady")
-        cells = [
+    def __repr__(self) -> str:
+        return "\n".join([self.title, text_table(_HEADS, self._cells()), *self.remarks])
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        return [
             (
                 one.name, f"{one.value:.4g}", one.error_text, one.unit, str(one.n),
                 f"{one.window[0]:.3g} to {one.window[1]:.4g}", one.verdict,
@@ -41,8 +47,10 @@ class Averages:
             for one in self.items
             if one.n
         ]  # fmt: skip
+
+    def _repr_html_(self) -> str:
         below = "".join(f"<p>{html.escape(one)}</p>" for one in self.remarks)
-        return html_table(heads, cells) + below
+        return html_table(_HEADS, self._cells()) + below
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -68,6 +76,12 @@ class Averaged:
     """A record with averages: each is had by its name, and a notebook shows them as a table."""
 
     averages: Averages
+
+    def __repr__(self) -> str:
+        """The averages as a table, and what else the record holds, arrays by their shape."""
+        held = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "averages"}  # type: ignore[arg-type]
+        beside = ", ".join(f"{name} {short(value)}" for name, value in held.items() if value is not None)
+        return f"{self.averages!r}\nbeside them: {beside}" if beside else repr(self.averages)
 
     def __getitem__(self, name: str) -> Average:
         return self.averages[name]

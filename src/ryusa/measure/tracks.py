@@ -10,12 +10,13 @@ from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
+from ryusa.printed import ByShape
 
 REST = 1.0  # diameters by which a grain at rest moves less within the window
 
 
-@dataclass(frozen=True)
-class Tracks:
+@dataclass(frozen=True, repr=False)
+class Tracks(ByShape):
     """Paths of some grains.
 
     Attributes

@@ -26,11 +26,12 @@ from ryusa.measure.statistics import Average, average, begin_in_words, ratio, st
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.water import water
 from ryusa.model import Scene
+from ryusa.printed import ByShape
 
 MIDDLE = 0.9  # share of the flux between the levels of the transport layer
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Transport(Averaged):
     """Sediment transport rate, and the layer that carries it.
 
@@ -76,8 +77,8 @@ class Transport(Averaged):
         ]
 
 
-@dataclass(frozen=True)
-class KineticStress:
+@dataclass(frozen=True, repr=False)
+class KineticStress(ByShape):
     """Stress that the fluctuations of grains carry, sigma phi <v'v'>, over height.
 
     Attributes

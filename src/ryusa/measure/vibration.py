@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
+from ryusa.printed import ByShape
 
 WINDOW = 0.01  # [s], that of fig10
 LEAST = 10  # frames in a window; with fewer a vibration could fall between them
@@ -18,8 +19,8 @@ LATE = 0.25  # of the time between frames, by which one may miss its time: it wa
 ExtentRule = Literal["z", "path", "net"]
 
 
-@dataclass(frozen=True)
-class Vibration:
+@dataclass(frozen=True, repr=False)
+class Vibration(ByShape):
     """Motion of grains within windows that follow one another.
 
     Attributes
@@ -74,8 +75,8 @@ class Vibration:
         return rows
 
 
-@dataclass(frozen=True)
-class VibratingGrains:
+@dataclass(frozen=True, repr=False)
+class VibratingGrains(ByShape):
     """Grains that moved by more than a threshold within one window.
 
     Attributes

@@ -18,7 +18,7 @@ AXES = ("x", "y", "z")
 ALONG = 1.0e-9  # sine of the angle up to which two directions are one
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WallForces(Averaged):
     """What grains do to walls: means from frame to frame, of every step in between.
 

@@ -22,7 +22,7 @@ HALF = 0.5  # of `water.column.packed`: where the bed ends
 LAYER = 0.25  # thickness of the layers of grain speed, in mean diameters
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WaterProfile(Averaged):
     """Means over the frames in a window.
 

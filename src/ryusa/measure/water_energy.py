@@ -8,6 +8,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.long_section import row_of
 from ryusa.model.row_energy import CHANGES, ROW_GIFTS, ROW_LOSSES, RowTerm, row_imbalance
+from ryusa.printed import ByShape
 
 WATER_TERMS = {
     "kinetic": "kinetic",
@@ -29,8 +30,8 @@ WATER_TERMS = {
 }  # key of a term -> what it is, as printed
 
 
-@dataclass(frozen=True)
-class WaterEnergy:
+@dataclass(frozen=True, repr=False)
+class WaterEnergy(ByShape):
     """Terms of the account since the start, per width, at each frame [J/m], each of shape (n_frame,).
 
     Attributes

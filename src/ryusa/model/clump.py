@@ -12,6 +12,7 @@ from ryusa.laws.families import DragOfForm
 from ryusa.laws.nonspherical import shape_factors_bagheri_bonadonna, shape_factors_ganser
 from ryusa.model.arrays import Floats
 from ryusa.model.union_of_spheres import moments_of_union
+from ryusa.printed import ByShape
 
 MOST_SPHERES = 64
 _GAP = 1.0e-9  # spheres nearer than this share of the sum of their radii touch
@@ -38,8 +39,8 @@ class ClumpFault(ValueError):
         super().__init__(message)
 
 
-@dataclass(frozen=True)
-class Clump:
+@dataclass(frozen=True, repr=False)
+class Clump(ByShape):
     """A rigid body of spheres in the frame of its principal axes, with the centre of mass at 0.
 
     Its matter fills the union of the spheres evenly: what spheres share counts once.

@@ -8,6 +8,7 @@ import numpy as np
 
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model.arrays import Floats
+from ryusa.printed import ByShape
 
 NAN = float("nan")
 AGREE = 0.02  # permitted relative difference of two inputs for the same quantity, because of rounding
@@ -21,8 +22,8 @@ class Top(IntEnum):
     LID = 1  # a plate that moves at u_lid, viscous stress in the highest half cell
 
 
-@dataclass(frozen=True)
-class Column:
+@dataclass(frozen=True, repr=False)
+class Column(ByShape):
     """Fixed properties of a column of n equal cells, averaged along and across the bed."""
 
     z_low: float  # bottom [m]
@@ -119,8 +120,8 @@ class Column:
         return tuple(faults)
 
 
-@dataclass(frozen=True)
-class WaterState:
+@dataclass(frozen=True, repr=False)
+class WaterState(ByShape):
     """The water at one moment; cells above the surface have the speed of the surface. Arrays are read-only.
 
     It includes the values that the grains use during the next coupling interval, so that a resume is exact.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.model.arrays import Floats
+from ryusa.printed import ByShape
 
 # One row per contact that ended. Vectors are those of grain i; n points from i to j.
 EVENT = np.dtype(
@@ -65,8 +66,8 @@ def _numbers(events: np.ndarray) -> np.ndarray:
     return events.view(np.float64).reshape(-1, N_EVENT)
 
 
-@dataclass(frozen=True)
-class Contacts:
+@dataclass(frozen=True, repr=False)
+class Contacts(ByShape):
     """History of the pairs that touch at present; it begins and ends with a contact.
 
     All arrays have n_contact rows; i is always a free grain, j > i a free grain, a fixed grain or a plane. In

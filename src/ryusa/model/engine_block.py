@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ryusa.model.arrays import Floats
+from ryusa.printed import ByShape
 
 
-@dataclass(frozen=True)
-class EngineBlock:
+@dataclass(frozen=True, repr=False)
+class EngineBlock(ByShape):
     """Internal data of one engine, part of snapshots and checkpoints.
 
     Attributes

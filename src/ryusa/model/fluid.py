@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.model.arrays import Floats
 from ryusa.model.column import WaterState
 from ryusa.model.eddies import Eddies
+from ryusa.printed import ByShape
 
 # Columns of `FluidAtGrains.sampled`.
 U, V, W = 0, 1, 2  # velocity of the water along x, y and z, fluctuations included [m/s]
@@ -24,8 +25,8 @@ DRAG = 3  # column of `impulse`: drag over slip [N s/m]
 N_IMPULSE = 4
 
 
-@dataclass(frozen=True)
-class FluidAtGrains:
+@dataclass(frozen=True, repr=False)
+class FluidAtGrains(ByShape):
     """Water at every free grain during a coupling interval, and the impulse on it since then.
 
     Attributes
@@ -46,8 +47,8 @@ class FluidAtGrains:
         return FluidAtGrains(sampled, np.zeros((n_grain, N_IMPULSE)))
 
 
-@dataclass(frozen=True)
-class CouplingState:
+@dataclass(frozen=True, repr=False)
+class CouplingState(ByShape):
     """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
 
     Attributes

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ryusa.laws.rigid_body import angular_momentum, rotate, spin
 from ryusa.model.arrays import Floats
+from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
 # Columns of `RigidBodies.drag_form`.
@@ -14,8 +15,8 @@ STOKES, NEWTON, SPHERICITY = 0, 1, 2  # shape factors of the drag, and the spher
 N_DRAG_FORM = 3
 
 
-@dataclass(frozen=True)
-class RigidBodies:
+@dataclass(frozen=True, repr=False)
+class RigidBodies(ByShape):
     """Fixed data of clumps. The spheres of a clump are free grains of successive ids: its members.
 
     Grains that belong to no clump move on their own. The mass of a member in `Scene.m` is its share of the
@@ -117,8 +118,8 @@ class RigidBodies:
         return ""
 
 
-@dataclass(frozen=True)
-class BodyState:
+@dataclass(frozen=True, repr=False)
+class BodyState(ByShape):
     """Motion of clumps; velocities and angular momenta belong to half a step before the rest."""
 
     x: Floats  # centres of mass [m], shape (n_body, 3)

@@ -14,6 +14,7 @@ from ryusa.model.column import Column, Top
 from ryusa.model.course import Course
 from ryusa.model.eddies import Eddies
 from ryusa.model.row_energy import N_ROW_TERM
+from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
 NAN = float("nan")
@@ -81,8 +82,8 @@ class RowDam:
     porous: bool = False
 
 
-@dataclass(frozen=True)
-class ColumnRow:
+@dataclass(frozen=True, repr=False)
+class ColumnRow(ByShape):
     """Fixed properties of a row of n_segment segments; without ends it is periodic."""
 
     column: Column  # of each station, its heights measured from the bottom
@@ -254,8 +255,8 @@ def _faults_of_end(name: str, end: RowEnd, n: int) -> list[str]:
     return faults
 
 
-@dataclass(frozen=True)
-class RowState:
+@dataclass(frozen=True, repr=False)
+class RowState(ByShape):
     """The water of a row at one moment; arrays are read-only. Segments beyond open ends are included.
 
     Cells above the surface have the speed of the surface. `profiles`, `edges` and `budgets` are those of the
@@ -278,8 +279,8 @@ class RowState:
     courant: float = 0.0  # largest Courant number met [-]
 
 
-@dataclass(frozen=True)
-class RowGrainState:
+@dataclass(frozen=True, repr=False)
+class RowGrainState(ByShape):
     """What the grains of a row know of its water between two exchanges.
 
     Attributes
@@ -296,8 +297,8 @@ class RowGrainState:
     eddies: Eddies | None = None
 
 
-@dataclass(frozen=True)
-class RowCouplingState:
+@dataclass(frozen=True, repr=False)
+class RowCouplingState(ByShape):
     """State of a row of a run between two exchanges, complete for a resume.
 
     Attributes

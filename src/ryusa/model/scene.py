@@ -34,6 +34,7 @@ from ryusa.model.rigid_bodies import RigidBodies
 from ryusa.model.row import ColumnRow
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import Walls
+from ryusa.printed import ByShape
 
 _INF = float("inf")
 
@@ -53,8 +54,8 @@ class EventRule(IntEnum):
     ALL = 2
 
 
-@dataclass(frozen=True)
-class ContactLaw:
+@dataclass(frozen=True, repr=False)
+class ContactLaw(ByShape):
     """Springs, dashpots and slider of every contact, Eqs. (1)-(4).
 
     With elastic spheres k_n and k_s are those of linear springs of the same contact time at `speed`, for a
@@ -94,8 +95,8 @@ ONLY_HERTZ = ("force", "youngs_modulus", "poisson_ratio", "unloading", "speed")
 ONLY_ADHESIVE = ("adhesion", "adhesion_amount")
 
 
-@dataclass(frozen=True)
-class RollingLaw:
+@dataclass(frozen=True, repr=False)
+class RollingLaw(ByShape):
     """Rolling friction, Eq. (13) and its variants."""
 
     model: Rolling = Rolling.NONE
@@ -106,8 +107,8 @@ class RollingLaw:
     twisting: float = 0.0  # largest torque about the normal over f_n R*, in space [-]; 0: none
 
 
-@dataclass(frozen=True)
-class Materials:
+@dataclass(frozen=True, repr=False)
+class Materials(ByShape):
     """Materials of grains and walls, and the contact of each two of them (design/0020)."""
 
     names: tuple[str, ...]
@@ -125,8 +126,8 @@ class Materials:
         return f"'{self.names[k // self.n]}' and '{self.names[k % self.n]}'"
 
 
-@dataclass(frozen=True)
-class Water:
+@dataclass(frozen=True, repr=False)
+class Water(ByShape):
     """One-way water: a velocity profile, a drag law, added mass and a torque, Eqs. (9)-(11)."""
 
     profile: Profile = Profile.NONE
@@ -159,8 +160,8 @@ class Water:
     magnus: Magnus = Magnus.NONE
 
 
-@dataclass(frozen=True)
-class Scene:
+@dataclass(frozen=True, repr=False)
+class Scene(ByShape):
     """All data that are fixed during a run, or between two changes of its timeline.
 
     Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow, then

@@ -11,10 +11,11 @@ from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState
 from ryusa.model.row import RowCouplingState
 from ryusa.model.tally import Tally
+from ryusa.printed import ByShape
 
 
-@dataclass(frozen=True)
-class State:
+@dataclass(frozen=True, repr=False)
+class State(ByShape):
     """One moment of a run (a snapshot); arrays returned by an engine are read-only.
 
     The scheme is semi-implicit: `v` and `omega` belong to half a step before `x`.

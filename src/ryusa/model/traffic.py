@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.model.arrays import Floats
 from ryusa.model.course import Course
+from ryusa.printed import ByShape
 
 Vector = tuple[float, float, float]
 NAN = math.nan
@@ -149,8 +150,8 @@ class Exit:
         return np.asarray(((x > np.array(self.low)) & (x < np.array(self.high))).all(axis=1))
 
 
-@dataclass(frozen=True)
-class Arrivals:
+@dataclass(frozen=True, repr=False)
+class Arrivals(ByShape):
     """When, where and how the grains of one feed come in, each by itself: those of a feeder reach.
 
     They enter at the upper end of a row of columns, in its box, and count their heights from the bed there.
@@ -172,8 +173,8 @@ class Arrivals:
     omega: Floats
 
 
-@dataclass(frozen=True)
-class Traffic:
+@dataclass(frozen=True, repr=False)
+class Traffic(ByShape):
     """Feeds and exits of a scene.
 
     Attributes
@@ -215,8 +216,8 @@ def _values(data: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True)
-class Population:
+@dataclass(frozen=True, repr=False)
+class Population(ByShape):
     """Which grains of a scene are there, at one moment.
 
     Attributes

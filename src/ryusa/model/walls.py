@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.laws.walls import swing, swing_speed, turned_about
 from ryusa.model.arrays import Bools, Floats
+from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
 
@@ -57,8 +58,8 @@ WORK = 6  # work that it gave [J]
 TOUCHED = 7  # number of its contacts times the time that they lasted [s]
 
 
-@dataclass(frozen=True)
-class Walls:
+@dataclass(frozen=True, repr=False)
+class Walls(ByShape):
     """Faces of all walls, each in the frame of its wall, which is that of the world while it is at rest.
 
     Faces take the ids after the planes. Grains touch both sides of a face.

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.model import BodyState
+from ryusa.printed import ByShape
 from ryusa.results.lazy import LazyFrames, Part
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Frame:
+@dataclass(frozen=True, repr=False)
+class Frame(ByShape):
     """One moment of a run."""
 
     t: float  # [s]
@@ -38,6 +39,12 @@ class Frames:
         self.omega = LazyFrames(parts, "omega", n_grain)  # [rad/s]
         self.image = LazyFrames(parts, "image", n_grain)  # periods crossed, shape (n_frame, n_grain, 2)
         self.x = LazyFrames(parts, "x", n_grain, lift=self._lift)  # unwrapped [m]
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return "Frames(none)"
+        span = f"{self.t[0]:.4g} to {self.t[-1]:.4g} s"
+        return f"Frames({len(self)} of {self.x.shape[1]} grains, {span}; t, step, x, v, omega, image)"
 
     def __len__(self) -> int:
         return len(self.t)

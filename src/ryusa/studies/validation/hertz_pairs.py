@@ -165,7 +165,8 @@ def _tangential_restitution(found: Found) -> Finding:
             ),
         ],
         {"e": "0.5", "mu": "0.4", "speed": "0.2 m/s", "radii": "0.1, 0.5 m", "second": "1000 times as dense"},
-        "Missed by 0.03 at q of 6, where contacts slide and stick in turn; the shape is that of the source, which "
-        "does not print its tangential dashpot: ours is that of EDEM and LIGGGHTS. Case A, whose second sphere "
-        "is a thousand times stiffer in shear alone, is no isotropic elastic body and is not run.",
+        "Missed by 0.03 at q of 6, where contacts slide and stick in turn; the shape is that of the source, "
+        "which does not print its tangential dashpot: ours is that of EDEM and LIGGGHTS. Case A, whose "
+        "second sphere is a thousand times stiffer in shear alone, is no isotropic elastic body and is not "
+        "run.",
     )  # fmt: skip
