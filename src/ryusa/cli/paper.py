@@ -13,6 +13,7 @@ from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
+    MostSeeds,
     On,
     carried_out,
     console,
@@ -59,6 +60,7 @@ def paper(
             "--seeds", metavar="N|A,B,..", help="Number of seeds, or the seeds; default 4, quick 1."
         ),
     ] = None,
+    most_seeds: MostSeeds = 0,
     json: Json = None,
     on: On = DEFAULT,
     jobs: Jobs = None,
@@ -80,7 +82,7 @@ def paper(
     if show:
         _list(plan, chosen, out, where.jobs, again)
         return
-    ledger, files = carried_out(PAPER, chosen, plan, out, json, where, again, quiet)
+    ledger, files = carried_out(PAPER, chosen, plan, out, json, where, again, quiet, most_seeds=most_seeds)
     _print(ledger)
     finish(ledger, files, out)
 

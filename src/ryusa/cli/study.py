@@ -51,6 +51,14 @@ Seeds = Annotated[
     str | None,
     typer.Option("--seeds", metavar="N|A,B,..", help="Number of seeds, or the seeds; default 3, quick 1."),
 ]
+MostSeeds = Annotated[
+    int,
+    typer.Option(
+        "--most-seeds", metavar="N", min=0, max=MOST_SEEDS,
+        help="While an interval leaves something undecided, give its part as many seeds again, up to N in "
+        "all; default: none.",
+    ),
+]  # fmt: skip
 Json = Annotated[
     Path | None,
     typer.Option("--json", metavar="FILE", help="Write the ledger here too; compressed if FILE ends in .xz."),
@@ -73,6 +81,7 @@ def study(
     quick: Annotated[bool, typer.Option("--quick", help="Quick level, one seed.")] = False,
     full: Annotated[bool, typer.Option("--full", help="Full level.")] = False,
     seeds: Seeds = None,
+    most_seeds: MostSeeds = 0,
     json: Json = None,
     on: On = DEFAULT,
     jobs: Jobs = None,
@@ -94,7 +103,7 @@ def study(
     if show:
         list_runs(mine, plan, out, where.jobs, again)
         return
-    ledger, files = carried_out(mine, None, plan, out, json, where, again, quiet)
+    ledger, files = carried_out(mine, None, plan, out, json, where, again, quiet, most_seeds=most_seeds)
     _print(ledger)
     finish(ledger, files, out)
 
@@ -109,6 +118,7 @@ def carried_out(
     again: bool,
     quiet: bool,
     earlier: Mapping[str, Any] | None = None,
+    most_seeds: int = 0,
 ) -> "tuple[Ledger, tuple[Path, ...]]":
     """Run a study and write its ledger and page; an interrupt leaves with its own exit code.
 
@@ -121,7 +131,9 @@ def carried_out(
 
     try:
         progress = None if quiet else ProgressLines()
-        made = make(chosen, names, plan, out, where=where, again=again, progress=progress)
+        made = make(
+            chosen, names, plan, out, where=where, again=again, progress=progress, most_seeds=most_seeds
+        )
         ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
     except KeyboardInterrupt:

@@ -12,6 +12,7 @@ from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
+    MostSeeds,
     On,
     Seeds,
     carried_out,
@@ -51,6 +52,7 @@ def validate(
         bool, typer.Option("--full", help="More and longer runs: hours; see --list. May be interrupted.")
     ] = False,
     seeds: Seeds = None,
+    most_seeds: MostSeeds = 0,
     against: Annotated[
         Path | None,
         typer.Option(
@@ -86,7 +88,7 @@ def validate(
     earlier = None if against is None else read_ledger(against)  # first: --json may write the same file
     if earlier is not None:
         refuse_other_study(earlier, VALIDATION.name)
-    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, where, again, quiet, earlier)
+    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, where, again, quiet, earlier, most_seeds)
     _print(ledger)
     finish(ledger, files, out)
     missed = [one.id for one in ledger.entries if one.outcome is Outcome.FAILS]

@@ -1,6 +1,6 @@
 """The ledger of a study: carry out its tasks, judge every part, keep the findings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from ryusa.running.folder import refuse_if_not_writable
 from ryusa.study.entry import LedgerEntry, plain_entry
 from ryusa.study.executors import Processes, RunExecutor
 from ryusa.study.fault import Fault, noted
-from ryusa.study.judge import Finding
+from ryusa.study.judge import Finding, Outcome
 from ryusa.study.means import means, rows_of
 from ryusa.study.origin import counted, missing_runs, origin, traces_of
 from ryusa.study.plan import Level, Plan
@@ -43,6 +43,7 @@ class Ledger:
     faults : errors after the runs.
     traces : tracebacks of errors in the program, for the log.
     earlier : ledger of the same study to compare the verdicts with.
+    seeds : of the parts that were given more than the plan has, by part.
     """
 
     study: Study
@@ -56,6 +57,7 @@ class Ledger:
     faults: Mapping[str, str] = field(default_factory=dict[str, str])
     traces: Mapping[str, str] = field(default_factory=dict[str, str])
     earlier: Mapping[str, Any] | None = None
+    seeds: Mapping[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
 
     @property
     def log(self) -> str:
@@ -71,6 +73,7 @@ class Ledger:
             "level": str(self.plan.level),
             "indicative": self.plan.level is Level.QUICK or len(self.plan.seeds) == 1,
             "seeds": list(self.plan.seeds),
+            "more_seeds": {name: list(own) for name, own in self.seeds.items()},
             **self.study.head(findings),
             "findings": [plain_entry(self.study, one, self.folder) for one in self.entries],
             "problems": dict(self.problems),
@@ -91,6 +94,7 @@ def make(
     where: RunExecutor | None = None,
     again: bool = False,
     progress: StudyProgress | None = None,
+    most_seeds: int = 0,
 ) -> Ledger:
     """Carry out the tasks, judge every part, and write tables and pictures.
 
@@ -102,6 +106,8 @@ def make(
     folder : runs go into `folder/runs`, tables and pictures of each part into `folder/<part>`.
     where : where runs are carried out, one at a time in this process if not given; no number depends on it.
     again, progress : as in `carry_out`.
+    most_seeds : while an interval over seeds leaves a finding undecided as shipped, its part gets as many
+        seeds again, as long as that makes no more than these.
 
     Raises
     ------
@@ -112,23 +118,43 @@ def make(
     refuse_if_not_writable(folder)
     provenance.commit()  # read now: later changes of the files are not part of the running code
     faults: dict[str, Fault] = {}
-    tasks: dict[str, Sequence[Task]] = {name: () for name in chosen}
-    for name in chosen:
-        with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
-            tasks[name] = study.part(name).tasks(plan)
     where = where or Processes(1)
-    results = carry_out(tasks, study.part, folder / "runs", again=again, progress=progress, where=where)
     tables: dict[str, list[dict[str, object]]] = {}
     entries: dict[str, LedgerEntry] = {}
-    for name in chosen:
-        for one in _judged(study, name, results, plan, folder, tables, faults):
-            entries[one.id] = one
+    results, own, left = TaskResults({}), plan, list(chosen)
+    seeds: dict[str, tuple[int, ...]] = {}
+    while left:
+        tasks: dict[str, Sequence[Task]] = {name: () for name in left}
+        for name in left:
+            done = results.found.get(name, {})
+            with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
+                tasks[name] = [one for one in study.part(name).tasks(own) if one not in done]
+        results.add(
+            carry_out(tasks, study.part, folder / "runs", again=again, progress=progress, where=where)
+        )
+        for name in left:
+            for one in _judged(study, name, results, own, folder, tables, faults):
+                entries[one.id] = one
+        if own is not plan:
+            seeds |= dict.fromkeys(left, own.seeds)
+        own = own.doubled()
+        left = _undecided(entries.values(), left) if len(own.seeds) <= most_seeds else []
     level = "" if plan.level is study.level else f"-{plan.level}"
     return Ledger(
         study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
         counted(results, where.jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
-        {what: one.words for what, one in faults.items()}, traces_of(results, faults),
+        {what: one.words for what, one in faults.items()}, traces_of(results, faults), seeds=seeds,
     )  # fmt: skip
+
+
+def _undecided(entries: Iterable[LedgerEntry], names: Sequence[str]) -> list[str]:
+    """Parts of which an interval over seeds leaves a finding undecided as shipped."""
+    open_ = {
+        one.part for one in entries
+        if one.finding is not None and one.finding.base_outcome is Outcome.UNDECIDED
+        and any(trial.found.n > 1 for trial in one.finding.base)
+    }  # fmt: skip
+    return [name for name in names if name in open_]
 
 
 def _naming(name: str) -> str:

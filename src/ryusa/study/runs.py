@@ -73,6 +73,19 @@ class TaskResults:
     commits: Counter[str] = field(default_factory=Counter[str])
     others: Counter[str] = field(default_factory=Counter[str])
 
+    def add(self, more: "TaskResults") -> None:
+        """Take in the results of other tasks of the same study."""
+        for name, found in more.found.items():
+            self.found.setdefault(name, {}).update(found)
+        for name, lacking in more.missing.items():
+            self.missing.setdefault(name, {}).update(lacking)
+        self.problems.update(more.problems)
+        self.n_run += more.n_run
+        self.n_opened += more.n_opened
+        self.seconds += more.seconds
+        self.commits += more.commits
+        self.others += more.others
+
 
 def carry_out(
     tasks: Mapping[str, Sequence[Task]],
