@@ -55,7 +55,7 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
     return [
         f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])}; {why}",
         f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
-        f"with sliding {_measured(shear['sliding'])}",
+        f"with sliding, where friction decides and not this number, {_measured(shear['sliding'])}",
     ]
 
 
