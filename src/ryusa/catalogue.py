@@ -158,7 +158,7 @@ MEASURES = (
     MeasureEntry("transport", "ryusa.measure.transport:transport",
                  "sediment transport rate and the layer that carries it", WINDOW, settled=True,
                  builders=("flume",), precision=("q", "q_star", "layer_thickness"),
-                 numbers=(("q", "m2/s"), ("q_star", "-"), ("layer_low", "m"),
+                 numbers=(("q", "m2/s"), ("q_mass", "kg/s/m"), ("q_star", "-"), ("layer_low", "m"),
                           ("layer_high", "m"), ("layer_thickness", "m")), needs=("period",), clumps=True),
     MeasureEntry("entrainment", "ryusa.measure.entrainment:entrainment",
                  "grains that start and stop moving, per area and time", WINDOW, settled=True,

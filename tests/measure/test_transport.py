@@ -119,7 +119,7 @@ def test_the_begin_suggested_comes_from_the_whole_run_and_leaves_the_window_alon
     assert transport(run).averages["q"].window[0] == pytest.approx(0.1)
     assert transport(run, 1.6).averages["q"].steady
     few = transport(run, end=0.25).averages.notes
-    assert any("not steady from any time" in one for one in few)
+    assert any("suggests no begin" in one for one in few)
     assert any("too few samples" in one for one in transport(run, end=0.15).averages.notes)
 
 
@@ -302,3 +302,20 @@ def test_what_cannot_be_measured_is_said(ride):
     run.scene = replace(run.scene, period=(math.inf, WIDTH))
     with pytest.raises(ResultsError, match="open along x"):
         transport(run)
+
+
+def test_the_rate_is_given_in_the_units_of_the_trade_beside_the_formulae(ride):
+    run = ride(*steady([0.5, 0.2, 0.1]), water=Water())
+    found = transport(run, tau_star=0.297)
+    q, mass = found.averages["q"], found.averages["q_mass"]
+    assert mass.unit == "kg/s/m"
+    assert mass.value == pytest.approx(2650.0 * q.value, rel=1e-12)
+    assert any(
+        one.startswith(
+            "Meyer-Peter & Müller 1948, plane bed: q_star = 1 at tau_star = 0.297; measured over it"
+        )
+        and float(one.split()[-1]) == pytest.approx(found.averages["q_star"].value, rel=0.05)
+        for one in found.averages.notes
+    )
+    below = transport(run, tau_star=0.03).averages.notes
+    assert "Meyer-Peter & Müller 1948, plane bed: q_star = 0 at tau_star = 0.03" in below

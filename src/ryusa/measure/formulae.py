@@ -1,7 +1,8 @@
 """Classical bed-load formulae for the grains and slope of a run, to compare its transport rate with."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -9,7 +10,9 @@ from ryusa.laws import debris
 from ryusa.laws import transport as laws
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
-from ryusa.measure.transport import Transport
+
+if TYPE_CHECKING:
+    from ryusa.measure.transport import Transport
 
 BELOW, ABOVE = 4.0, 4.0  # how far the lines reach to either side of a run's tau_star, as factors
 LEAST, MOST = 0.03, 1.0  # and how far at least
@@ -25,7 +28,27 @@ class FormulaCurve(NamedTuple):
     q_star: Floats
 
 
-def classical(run: Run, found: Transport) -> list[FormulaCurve]:
+def _ashida_michiue(tau_star: float) -> float:
+    return laws.q_star_ashida_michiue(tau_star, tau_star, THRESHOLD)
+
+
+_LAWS: dict[str, Callable[[float], float]] = {
+    "Meyer-Peter & Müller 1948": laws.q_star_meyer_peter_mueller,
+    "Wong & Parker 2006": laws.q_star_wong_parker,
+    "Ashida & Michiue 1972": _ashida_michiue,
+}
+
+
+def predicted(tau_star: float) -> dict[str, float]:
+    """Dimensionless transport rate [-] by each formula for a dimensionless shear stress [-], by its author.
+
+    >>> [f"{one:.4f}" for one in predicted(0.2).values()]
+    ['0.4788', '0.2318', '0.5702']
+    """
+    return {name: law(tau_star) for name, law in _LAWS.items()}
+
+
+def classical(run: Run, found: "Transport") -> list[FormulaCurve]:
     """Meyer-Peter & Mueller, Wong & Parker, Ashida & Michiue, and Egashira where the run has a slope.
 
     Parameters
@@ -40,15 +63,8 @@ def classical(run: Run, found: Transport) -> list[FormulaCurve]:
     """
     middle = found.tau_star if found.tau_star > 0.0 else math.sqrt(LEAST * MOST)
     tau = np.geomspace(min(LEAST, middle / BELOW), max(MOST, middle * ABOVE), 240)
-    lines = [
-        FormulaCurve("Meyer-Peter & Müller 1948", tau, _each(laws.q_star_meyer_peter_mueller, tau)),
-        FormulaCurve("Wong & Parker 2006", tau, _each(laws.q_star_wong_parker, tau)),
-        FormulaCurve(
-            "Ashida & Michiue 1972",
-            tau,
-            np.array([laws.q_star_ashida_michiue(one, one, THRESHOLD) for one in tau]),
-        ),
-    ]
+    rates = [predicted(float(one)) for one in tau]
+    lines = [FormulaCurve(name, tau, np.array([one[name] for one in rates])) for name in _LAWS]
     scene = scene_at(run, float(found.t[0]))
     slope = math.atan2(float(scene.gravity[0]), -float(scene.gravity[2]))
     contact = run.case.get("contact") or {}
@@ -60,8 +76,3 @@ def classical(run: Run, found: Transport) -> list[FormulaCurve]:
         if np.isfinite(q).all():
             lines.append(FormulaCurve("Egashira et al. 1997", tau, q))
     return lines
-
-
-def _each(law: object, tau: Floats) -> Floats:
-    assert callable(law)
-    return np.array([law(float(one)) for one in tau], dtype=np.float64)

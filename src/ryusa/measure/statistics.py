@@ -236,7 +236,7 @@ def ratio(
 
 
 def begin_in_words(name: str, t: ArrayLike, record: ArrayLike, settle: float, begin: float | None) -> str:
-    """From when on a record is steady by MSER, beside the begin of the window that was taken.
+    """When MSER would begin the window, beside when it begins; whether that is steady, its average says.
 
     Parameters
     ----------
@@ -256,8 +256,10 @@ def begin_in_words(name: str, t: ArrayLike, record: ArrayLike, settle: float, be
     if len(samples) < PARTS * (WAVES + 1):
         return f"too few samples to suggest a begin for {name}; {taken}"
     if math.isnan(share):
-        return f"{name} is not steady from any time on by MSER; {taken}"
-    return f"{name} is steady from t = {times[math.ceil(share * len(times))]:.3g} s on by MSER; {taken}"
+        return f"MSER suggests no begin of the window for {name}; {taken}"
+    return (
+        f"MSER suggests a window for {name} from t = {times[math.ceil(share * len(times))]:.3g} s on; {taken}"
+    )
 
 
 def _average(

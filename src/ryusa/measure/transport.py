@@ -9,6 +9,7 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.laws.water import tau_star_from_u_star
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
+from ryusa.measure.formulae import predicted
 from ryusa.measure.profiles import (
     CHUNK,
     U_X,
@@ -50,7 +51,7 @@ class Transport(Averaged):
     tau_error : its standard error [-]; nan where it is not measured.
     bed : height of the bed above the datum at which it is measured [m]; nan where it is not.
     d, g : mean diameter of the free grains [m] and length of the gravity vector [m/s2].
-    averages : q, q_star, layer_low, layer_high, layer_thickness, with errors and steadiness.
+    averages : q, q_mass, q_star, layer_low, layer_high, layer_thickness, with errors and steadiness.
     """
 
     t: Floats
@@ -151,7 +152,8 @@ def transport(
     sums, edge = _sums(run, first, last, scene, 0.0, thickness, None, False)
     carried = sums[:, :, U_X] / area
     d, g = scene.d_mean, float(np.linalg.norm(scene.gravity))
-    excess = _excess(run, scene, float(scene.m.sum() / ball.sum()), rho_w)
+    rho_s = float(scene.m.sum() / ball.sum())
+    excess = _excess(run, scene, rho_s, rho_w)
     scale = math.sqrt(excess * g * d**3)
     window = (since, float(t[-1]))
     q = ratio("q", "m2/s", [moved], [dt], window)
@@ -177,12 +179,22 @@ def transport(
             "transport",
             (
                 q,
+                replace(
+                    q,
+                    name="q_mass",
+                    unit="kg/s/m",
+                    value=q.value * rho_s,
+                    error=q.error * rho_s,
+                    drift=q.drift * rho_s,
+                ),
                 replace(q, name="q_star", unit="-", value=q.value / scale, error=q.error / scale),
                 *_layer(carried, edge * thickness, thickness, window),
                 *([] if stress is None else [stress]),
             ),
             (
                 _of_stress(tau_star, bed),
+                *_beside(tau_star, q.value / scale),
+                "q counts the volume of the grains: 1 m2/s is 1 m3/s for each metre of width",
                 f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
                 begin_in_words("q_star", times[1:], ever / np.diff(times), settle_time(run), begin),
                 f"transport layer: the middle {MIDDLE:.0%} of the flux; heights above datum, z = 0 of the "
@@ -340,6 +352,17 @@ def _of_stress(tau_star: float, bed: float) -> str:
     if math.isnan(bed):
         return f"tau_star = {tau_star:.4g}, as the case asks for"
     return f"tau_star: shear stress of the clear water, extrapolated to the bed at z = {bed:.4g} m"
+
+
+def _beside(tau_star: float, q_star: float) -> list[str]:
+    """The classical formulae at the stress of the run, and what was measured over them."""
+    if not tau_star > 0.0:
+        return []
+    return [
+        f"{name}, plane bed: q_star = {rate:.3g} at tau_star = {tau_star:.3g}"
+        + (f"; measured over it {q_star / rate:.2g}" if rate > 0.0 else "")
+        for name, rate in predicted(tau_star).items()
+    ]
 
 
 def _crest(scene: Scene) -> str:
