@@ -157,7 +157,7 @@ def test_the_begin_of_steady_hops_is_told_from_all_hops_beside_the_settling_of_t
     t, x, v, events = make.hopping(rises, n_grain=4)  # the first of four, over a bed that is long enough
     run = make.run_of(t, x[:, None].repeat(4, 1), v[:, None].repeat(4, 1), events, settle=0.05)
     note = saltation(run, grains=[0]).averages.notes[0]
-    assert note.startswith("jump_height is steady from t = ")
+    assert note.startswith("MSER suggests a window for jump_height from t = ")
     assert note.endswith("the case settles until 0.05 s")
     began = float(note.split("t = ")[1].split(" s")[0])
     hops = saltation(run, settle=0.0, grains=[0]).hops
