@@ -184,6 +184,27 @@ def measures_table() -> str:
     return "\n".join(["| `WHAT` | what it gives | Python |", "|---|---|---|", *rows]) + "\n"
 
 
+def questions() -> str:
+    """The packaged cases by question, with what to type and how long they take by `ryusa check`."""
+    from ryusa.casefile import derive
+    from ryusa.casefile.estimate import seconds_needed
+    from ryusa.casefile.read import read
+    from ryusa.cases import case_path
+    from ryusa.cases.questions import QUESTIONS
+
+    def minutes(name: str) -> str:
+        case = read(case_path(f"{name}.toml"))
+        seconds = seconds_needed(case, derive(case))
+        return f"`{name}`, {max(round(seconds / 60.0), 1)} min"
+
+    lines = ["| question | case, and minutes on one core | then | what comes out |", "|---|---|---|---|"]
+    for one in QUESTIONS:
+        cases = "<br>".join(minutes(name) for name in one.cases) or "none"
+        typed = "<br>".join(f"`{command}`" for command in one.commands)
+        lines.append(f"| {one.asked} | {cases} | {typed} | {one.answer} |")
+    return "\n".join(lines)
+
+
 def command_reference() -> str:
     """Every command of the command line with its arguments and options."""
     lines: list[str] = []
@@ -276,6 +297,7 @@ def pages() -> dict[Path, str]:
     return {
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
+        HERE / "which-case.md": _between_markers(HERE / "which-case.md", questions()),
         HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
         HERE / "paper.md": filled(with_tables(_between_markers(HERE / "paper.md", paper_table()))),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),

@@ -72,8 +72,7 @@ def new(
     """Write a commented case file to start from."""
     kinds = _kinds()
     if kind is None:
-        for name, title in kinds.items():
-            typer.echo(f"{name:<24}{title}")
+        _list_by_question(kinds)
         return
     if kind not in kinds:
         from ryusa.spelling import nearest_word
@@ -92,6 +91,23 @@ def new(
     except OSError as error:
         raise RyusaError(f"{path}: cannot be written ({error.strerror or error})") from error
     typer.echo(f"{path} written. Next: ryusa check {path}; ryusa run {path}")
+
+
+def _list_by_question(kinds: dict[str, str]) -> None:
+    from ryusa.cases.questions import QUESTIONS
+
+    for one in QUESTIONS:
+        typer.echo(one.asked)
+        for name in one.cases:
+            typer.echo(f"  {name:<22}{kinds[name]}")
+        typer.echo(f"  -> {one.answer}")
+        for command in one.commands:
+            typer.echo(f"     {command}")
+        typer.echo()
+    typer.echo("Cases of the studies, which repeat a paper or a comparison:")
+    for name, title in kinds.items():
+        if "/" in name:
+            typer.echo(f"  {name:<22}{title}")
 
 
 def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:

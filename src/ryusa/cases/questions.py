@@ -1,0 +1,101 @@
+"""The packaged cases by the question that a user comes with: `ryusa new`, and the first page of the docs."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Question:
+    """A job of an engineer or a researcher.
+
+    Attributes
+    ----------
+    asked : the question.
+    cases : packaged cases that answer it, the nearest first; none where another command or nothing does.
+    commands : what to type after `ryusa run`, in order.
+    answer : what comes out, and what it does not cover.
+    """
+
+    asked: str
+    cases: tuple[str, ...]
+    commands: tuple[str, ...]
+    answer: str
+
+
+QUESTIONS = (
+    Question(
+        "How much bed load does my reach carry?", ("bedload_3d", "even_bed", "movable_bed", "saltation"),
+        ("ryusa measure RUN transport", "ryusa sweep CASE --seeds 4"),
+        "kg/s per metre of width with its error, beside Meyer-Peter & Müller and Wong & Parker",
+    ),
+    Question(
+        "And in a steep or violent flow?", ("sheet_flow", "dense_3d", "dense_plane"),
+        ("ryusa measure RUN transport", "ryusa measure RUN profile"),
+        "rate, layer that moves, profiles of velocity and concentration",
+    ),
+    Question(
+        "How does a reach change in a flood?", ("river", "fed_river"),
+        ("ryusa draw RUN long_section", "ryusa measure RUN discharge"),
+        "bed and water along the reach over time; the water is hydrostatic, so no bed forms",
+    ),
+    Question(
+        "What does a weir or a flume with a feeder do?", ("weir", "flume"),
+        ("ryusa draw RUN x_t", "ryusa measure RUN discharge", "ryusa measure RUN loads"),
+        "jump, ponded depth, grains in and out, force on the weir with the water in it",
+    ),
+    Question(
+        "Will this dam hold, and when is it full?", ("sabo_dam", "dam"),
+        ("ryusa measure RUN loads", "ryusa measure RUN deposit"),
+        "force and moment of water and grains per metre, volume trapped; the water's impact is not in it",
+    ),
+    Question(
+        "How far does a debris flow run, and what stays?",
+        ("slope_break", "debris_flume", "debris_equilibrium"),
+        ("ryusa measure RUN front", "ryusa measure RUN deposit"),
+        "front over time, deposit, slope it rests at",
+    ),
+    Question(
+        "What does a dam break or a delta do to loose ground?", ("dam_break", "delta"),
+        ("ryusa draw RUN long_section", "ryusa measure RUN front"), "wave, erosion, front of the delta",
+    ),
+    Question(
+        "How deep is the scour under a jet or at a pier?", (), (),
+        "not to be had: the water of a row is hydrostatic, and has no jet and no flow round a pier",
+    ),
+    Question(
+        "What is the angle of repose of my material?",
+        ("poured_heap", "lifted_cylinder", "gravel_heap", "heap"),
+        ("ryusa measure RUN cone", "ryusa calibrate STUDY.toml"),
+        "slope of the heap with its error; friction and rolling friction from your own test",
+    ),
+    Question(
+        "How fast does my hopper empty?", ("hopper",), ("ryusa measure RUN discharge",),
+        "kg/s through the outlet",
+    ),
+    Question(
+        "How far does a column or a slope collapse?", ("column_collapse", "channel_collapse"),
+        ("ryusa measure RUN surface",), "run-out and shape of the deposit",
+    ),
+    Question(
+        "What strength does my material have?", ("direct_shear", "shear_cell", "split_bottom"),
+        ("ryusa measure RUN direct_shear", "ryusa measure RUN shear"),
+        "friction over shear, dilation, profile",
+    ),
+    Question(
+        "How do grains flow, mix and sort in a drum or mill?", ("drum", "mill"),
+        ("ryusa measure RUN dynamic_angle", "ryusa measure RUN segregation"), "angle, torque, sorting",
+    ),
+    Question(
+        "How do suspended or mixed grains settle?", ("settling_column", "graded_gravel"),
+        ("ryusa measure RUN profile", "ryusa measure RUN segregation"), "hindered settling, sorting of a bed",
+    ),
+    Question(
+        "Does the program do what it says?", ("drop", "box"),
+        ("ryusa measure RUN collisions", "ryusa validate --quick"),
+        "restitution, contact time, energy account",
+    ),
+    Question(
+        "How soft may I make the springs, and how many seeds do I need?", (),
+        ("ryusa soften CASE.toml", "stop.precision in the case"),
+        "the softest contacts that do not change the answer; a run that ends by the error of its averages",
+    ),
+)  # fmt: skip

@@ -1,0 +1,33 @@
+"""Every packaged case is found by a question, and what a question tells to type exists."""
+
+from typer.testing import CliRunner
+
+from ryusa.cases import case_files
+from ryusa.cases.questions import QUESTIONS
+from ryusa.catalogue import MEASURES, PICTURES
+from ryusa.cli import app
+
+
+def test_every_packaged_case_answers_a_question_and_no_other_is_named() -> None:
+    named = [case for one in QUESTIONS for case in one.cases]
+    assert sorted(named) == sorted(case_files())  # and each once
+
+
+def test_commands_name_measures_and_pictures_that_exist() -> None:
+    known = {one.name for one in (*MEASURES, *PICTURES)}
+    words = [command.split() for one in QUESTIONS for command in one.commands]
+    asked = [word[3] for word in words if word[:2] in (["ryusa", "measure"], ["ryusa", "draw"])]
+    assert asked and set(asked) <= known
+    commands = {name for word in words if word[0] == "ryusa" for name in word[1:2]}
+    help_ = CliRunner().invoke(app, ["--help"]).output
+    assert all(name in help_ for name in commands)
+
+
+def test_new_without_a_name_lists_the_cases_by_question() -> None:
+    shown = CliRunner().invoke(app, ["new"]).output
+    for one in QUESTIONS:
+        assert one.asked in shown
+    assert all(name in shown for name in case_files())
+    assert "paper/fig19" in shown
+    assert shown.index("How fast does my hopper empty?") < shown.index("hopper  ")
+    assert max(map(len, shown.splitlines())) <= 120
