@@ -29,8 +29,8 @@ GONE = """
 No longer so, but listed in registered.txt: an entry was edited in place or taken away. Put it back as it was,
 and write the change as a further entry beside it: [[claim.band]] with its date and `change`, or for a text
 [[claim.changed]] with its wording before. A band that only the code of a validation had goes into its
-registration as the first of two entries, in the file named after the module; its reason stays as it was, or is
-the expression that made it, where the limits depend on what is measured. Then: {add}
+registration as the first of two entries, in the file named after the module; its reason stays as it was, or
+is the expression that made it, where the limits depend on what is measured. Then: {add}
 """
 NEW = "\n{lines}\n\nNew, and not yet listed in registered.txt. Add it: {add}"
 
