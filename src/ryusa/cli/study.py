@@ -198,7 +198,7 @@ def numbers_table() -> Any:
 
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
+    table.add_column(max_width=20)  # a verdict with its share or its first entry is a sentence
     table.add_column(ratio=1, overflow="fold")
     return table
 
