@@ -153,22 +153,27 @@ def lookup(text: str) -> Number:
 
 @cache  # a page asks a hundred times
 def kept(name: str) -> dict[str, Any]:
-    """Ledger of that name."""
-    from ryusa.study.kept import read_ledger
+    """Ledger of that name, judged by the bands that are in force."""
+    from ryusa.study.kept import as_registered, read_ledger
 
     path = LEDGERS / f"{name}.json.xz"
     if not path.exists():
         known = [one.name.removesuffix(".json.xz") for one in sorted(LEDGERS.glob("*.json.xz"))]
         raise UnknownNumber(f"no ledger {name!r}; {nearest(name, known)}")
-    return read_ledger(path)
+    ledger = read_ledger(path)
+    return as_registered(_study_named(ledger["study"]), ledger)
 
 
 def study_of(ledger: str) -> Study:
     """The study whose words a ledger has."""
+    return _study_named(kept(ledger)["study"])
+
+
+def _study_named(name: str) -> Study:
     from ryusa.studies.osada2004.study import PAPER
     from ryusa.studies.validation.study import VALIDATION
 
-    return {one.name: one for one in (PAPER, VALIDATION)}[kept(ledger)["study"]]
+    return {one.name: one for one in (PAPER, VALIDATION)}[name]
 
 
 def _of_claim(entry: Mapping[str, Any], wanted: Asked) -> Number:

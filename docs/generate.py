@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cited import filled, untrue
+from cited import filled, kept, untrue
 from paper_tables import paper_table, with_tables
+from registered_tables import changed_bands, changed_texts
 
 from ryusa.catalogue import MEASURES, PICTURES
 
@@ -31,6 +32,11 @@ UNITS = {
     "discharge per width": "m2/s",
     "rate": "kg/s or grains/s",
 }
+CHANGED = (
+    "Bands, and conditions of what they judge, that were changed after a number was known. The first entry "
+    "stands beside the later one with the verdict by both, from the numbers of the kept ledger; comparisons "
+    "of the full level are in no kept ledger and are *not judged* here. Below them changed samples and tests."
+)
 KNOWN_NUMBERS = {0.5235987755982988: "pi/6", 0.7853981633974483: "pi/4"}
 
 
@@ -262,12 +268,18 @@ def _parameter(parameter: Any) -> str:
 def validation_table() -> str:
     """Every comparison of the kept ledger of `ryusa validate`, changed verdicts, runs of each comparison."""
     from ryusa.studies.validation.sampling import CLOSED, sampling_table
-    from ryusa.studies.validation.study import changes, table
-    from ryusa.study.kept import read_ledger
+    from ryusa.studies.validation.study import VALIDATION, changes, counted, table
 
-    kept = read_ledger(LEDGERS / "validation.json.xz")
+    ledger = kept("validation")
     closed = ", ".join(f"{name} ({why})" for name, why in CLOSED.items())
-    parts = [table(kept), *changes(kept), "## Runs of each comparison", sampling_table()]
+    parts = [counted(ledger), table(ledger), *changes(ledger)]
+    parts += [
+        "## Bands that were changed",
+        CHANGED,
+        changed_bands(VALIDATION, ledger),
+        changed_texts(VALIDATION),
+    ]
+    parts += ["## Runs of each comparison", sampling_table()]
     parts.append(f"Nothing is drawn at random, so that results repeat to the last bit: {closed}.")
     return "\n\n".join(parts) + "\n"
 
@@ -276,13 +288,12 @@ def ledger_summaries() -> dict[Path, str]:
     """One line per number of each kept ledger, for a reader of the repository and for `git diff`."""
     from ryusa.studies.osada2004.study import PAPER
     from ryusa.studies.validation.study import VALIDATION
-    from ryusa.study.kept import read_ledger
     from ryusa.study.page import summary
 
     return {
         LEDGERS / f"{study.name}.md": f"# {study.title}\n\nWritten by docs/generate.py from "
         f"[{study.name}.json.xz]({study.name}.json.xz), which also holds every sweep; `{study.command}` "
-        f"makes it anew.\n\n{summary(study, read_ledger(LEDGERS / f'{study.name}.json.xz'))}\n"
+        f"makes it anew.\n\n{summary(study, kept(study.name))}\n"
         for study in (PAPER, VALIDATION)
     }
 

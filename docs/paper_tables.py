@@ -6,6 +6,7 @@ from typing import Any
 
 from cited import kept, lookup
 from cited_number import UnknownNumber, nearest
+from registered_tables import changed_bands, changed_texts
 
 TABLE = re.compile(r"<!-- table (?P<name>[^>]+?) -->.*?<!-- end of table -->", re.DOTALL)
 FILMED = {"saltation": "film-saltation", "dry avalanche": "film-avalanche", "debris flow": "film-debris"}
@@ -19,11 +20,23 @@ SOFTENED = (
 
 
 def paper_table() -> str:
-    """Every claim of the kept ledger of `ryusa paper`."""
-    from ryusa.studies.osada2004.study import table
+    """Every claim of the kept ledger of `ryusa paper`, and what was changed in their registration."""
+    from ryusa.studies.osada2004.study import PAPER, table
 
     standard, full = kept("paper"), kept("paper-full")
-    return f"{table(standard)}\n\n{robustness_table(standard, full)}\n"
+    parts = [
+        table(standard),
+        robustness_table(standard, full),
+        "## Bands and texts that were changed",
+        "Every entry of a band that a later one replaced, with the verdict of the kept standard ledger on "
+        "the case as it ships by both; what no run has a number for is *not judged*.",
+        changed_bands(PAPER, standard),
+        "Texts of the registration that were changed after they were committed; the earlier wording stands "
+        "beside the later one in the [files](../src/ryusa/studies/osada2004/registration) and on the page "
+        "that `ryusa paper` writes.",
+        changed_texts(PAPER),
+    ]
+    return "\n\n".join(parts) + "\n"
 
 
 def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> str:

@@ -37,7 +37,9 @@ def test_a_check_is_computed_written_and_a_second_time_opened(tmp_path):
     kept = json.loads((tmp_path / "copy.json").read_text(encoding="utf-8"))
     assert again.exit_code == 0
     assert kept["provenance"]["runs_made"] == 0
-    assert {one["verdict"] for one in kept["findings"]} == {"within"}
+    assert {one["verdict"] for one in kept["findings"]} == {"within", "within (check)"}
+    assert "2 within; 6 checks, which all hold" in " ".join(first.stdout.split())
+    assert "(at most 1e-07, check)" in " ".join(first.stdout.split())
 
 
 @pytest.mark.full
@@ -83,12 +85,14 @@ def test_changed_verdicts_are_listed_against_an_earlier_ledger(tmp_path, monkeyp
     more = ("--against", kept, "--json", kept)  # the earlier one is read before it is replaced
     result = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1, *more)
     assert result.exit_code == 4
-    assert "water-alone/log-rough: within, now missed" in result.stdout
+    assert "water-alone/log-rough: within (check), now missed (check)" in result.stdout
     assert "contrary: water-alone/log-rough" in result.stderr
     page = (tmp_path / "validation-quick-part.html").read_text(encoding="utf-8")
-    assert "<li>water-alone/log-rough: within, now missed</li>" in page
+    assert "<li>water-alone/log-rough: within (check), now missed (check)</li>" in page
+    assert "6 checks, of which 2 fail" in page
     against = json.loads(kept.read_text(encoding="utf-8"))["against"]
-    assert {"id": "water-alone/log-rough", "old": "within", "new": "missed"} in against["changed"]
+    line = {"id": "water-alone/log-rough", "old": "within (check)", "new": "missed (check)"}
+    assert line in against["changed"]
 
 
 def test_a_ledger_of_another_study_is_refused(tmp_path):

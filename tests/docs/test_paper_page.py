@@ -8,7 +8,7 @@ import pytest
 
 from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
-from ryusa.study.kept import read_ledger
+from ryusa.study.kept import as_registered, read_ledger
 from ryusa.study.page import render
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -26,7 +26,12 @@ def page():
 
 def kept(name=LEDGERS[0]):
     """Claim -> finding, as the kept ledger has them."""
-    return {one["id"]: one for one in read_ledger(DOCS / "ledgers" / name)["findings"]}
+    return {one["id"]: one for one in of_today(name)["findings"]}
+
+
+def of_today(name):
+    """The kept ledger, judged by the bands that are in force."""
+    return as_registered(PAPER, read_ledger(DOCS / "ledgers" / name))
 
 
 def settings_of(finding):
@@ -87,7 +92,7 @@ def test_both_levels_give_a_claim_one_verdict():
 
 @pytest.mark.parametrize("name", LEDGERS)
 def test_no_verdict_on_the_page_of_a_kept_ledger_lacks_its_share(name, tmp_path):
-    plain = read_ledger(DOCS / "ledgers" / name)
+    plain = of_today(name)
     bare = {**plain, "findings": [{**one, "pictures": []} for one in plain["findings"]]}
     text = render(PAPER, bare, {}, tmp_path)
     verdicts = re.findall(r'<b class="word [^"]*">(.*?)</b>(.*?)(?:</td>|</span>|\. )', text, re.DOTALL)

@@ -5,7 +5,9 @@ import json
 import pytest
 
 from ryusa.errors import ResultsError
-from ryusa.study.kept import read_ledger, write_ledger
+from ryusa.study import Study
+from ryusa.study.kept import as_registered, read_ledger, write_ledger
+from ryusa.study.registration import Registration
 
 PLAIN = {"format": 3, "study": "mine", "findings": [{"id": "one", "verdict": "holds"}]}
 
@@ -81,6 +83,49 @@ def test_a_ledger_of_comparisons_of_format_1_is_read(tmp_path):
     assert (one["part"], one["outcome"], one["decided_by"]) == ("a", "fails", "why")
     assert one["trials"][0]["asked"] == {"low": 0.0, "high": 0.1, "unit": "m", "says": "a cell"}
     assert one["pictures"] == ["pictures/a-b.png"]
+
+
+def test_a_kept_ledger_is_judged_by_a_band_that_is_newer_than_it(tmp_path):
+    """The numbers stay; verdict, settings and words are those of the entry in force, the first is beside."""
+    (tmp_path / "r.toml").write_text(
+        """
+[[claim]]
+id = "one"
+  [[claim.band]]
+  part = "n"
+  high = 2.0
+  unit = "-"
+  reason = "wide"
+  date = 2026-01-02
+  [[claim.band]]
+  part = "n"
+  high = 1.0
+  unit = "-"
+  reason = "narrow"
+  date = 2026-01-03
+  change = "the first cannot fail"
+""",
+        encoding="utf-8",
+    )
+
+    class Mine(Study):
+        """A study with a registration."""
+
+        registration = Registration.read(tmp_path / "r.toml")
+
+        def part(self, name):
+            raise NotImplementedError(name)
+
+    asked = {"low": None, "high": 2.0, "unit": "-", "says": "wide"}
+    number = {"part": "n", "choices": {}, "unit": "-", "asked": asked, "outcome": "holds", "note": ""}
+    trials = [{**number, "value": 1.5, "low": 1.4, "high": 1.6}]
+    entry = {**PLAIN["findings"][0], "outcome": "holds", "base_outcome": "holds", "trials": trials}
+    old = {**PLAIN, "findings": [{**entry, "beside": [], "condition": "", "readings": []}]}
+    (one,) = as_registered(Mine(), old)["findings"]
+    assert (one["outcome"], one["verdict"]) == ("fails", "fails; holds as first registered")
+    assert one["trials"][0]["asked"] == {"low": None, "high": 1.0, "unit": "-", "says": "narrow"}
+    assert (one["robustness"]["holds"], one["robustness"]["of"]) == (0, 1)
+    assert old["findings"][0]["trials"][0]["outcome"] == "holds"
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"format": 99}', '{"findings": []}'])

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from ryusa.study import Band, Finding, Outcome, Plan, Study, Trial, exact, over_range
 from ryusa.study.entry import LedgerEntry, plain_entry
-from ryusa.study.said import said, tally
+from ryusa.study.said import checks, said, tally
 from ryusa.study.verdict import Count, held_of, settings_within
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
@@ -179,6 +179,33 @@ def test_no_share_has_more_settings_than_were_run(held, levels, readings):
 def test_trials_of_a_file_are_counted_as_those_of_a_finding(tmp_path):
     found = Finding("one", read([(True, None, False), (None, True, False)]), readings=("pair",))
     assert held_of(plain(found, tmp_path)["trials"]) == found.by_choice
+
+
+@pytest.mark.parametrize(
+    ("first", "words"),
+    [
+        ("fails", "; fails as first registered"),
+        ("not judged", "; not judged as first registered"),
+        ("holds", ""),
+    ],
+)
+def test_a_verdict_says_what_the_bands_gave_as_they_were_registered_first(first, words, tmp_path):
+    entry = {**plain(finding(True, False), tmp_path), "registered": {"first": first}}
+    assert str(said(entry, str)) == f"holds as shipped, in 1 of 2 settings{words}"
+
+
+def test_a_check_is_named_and_counted_beside_the_verdicts(tmp_path):
+    check = {"registered": {"check": True}}
+    entries = [
+        plain(finding(True), tmp_path),
+        {**plain(finding(True), tmp_path), **check},
+        {**plain(finding(False), tmp_path), **check},
+    ]
+    assert str(said(entries[1], str)) == "holds (check)"
+    assert str(said(entries[2], str)) == "fails (check)"
+    assert tally(entries, lambda entry: said(entry, str)) == [(Outcome.HOLDS, "holds", 1, "")]
+    assert checks(entries) == "2 checks, of which 1 fail"
+    assert checks(entries[:1]) == ""
 
 
 def test_findings_are_counted_by_what_ships_with_the_share_that_holds_in_most_settings(tmp_path):

@@ -210,7 +210,7 @@ def numbers_table() -> Any:
 
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
+    table.add_column(max_width=20)  # a verdict with its share or its first entry is a sentence
     table.add_column(ratio=1, overflow="fold")
     return table
 
@@ -239,14 +239,14 @@ def _print(ledger: "Ledger") -> None:
 def print_counts(ledger: "Ledger") -> None:
     """How many findings have each verdict, and how many of these hold in most settings."""
     from ryusa.study.entry import plain_entry
-    from ryusa.study.said import tally
+    from ryusa.study.said import checks, tally
 
     entries = [plain_entry(ledger.study, one, ledger.folder) for one in ledger.entries]
     lines = [
         f"{n} {headline} ({settings})" if settings else f"{n} {headline}"
         for _, headline, n, settings in tally(entries, ledger.study.said)
     ]
-    typer.echo("; ".join(lines))
+    typer.echo("; ".join(filter(None, [*lines, checks(entries)])))
 
 
 def executor_at(on: str, jobs: int | None) -> "RunExecutor":

@@ -77,7 +77,7 @@ def validate(
     """
     from ryusa.studies.validation.study import VALIDATION
     from ryusa.study import Outcome
-    from ryusa.study.kept import read_ledger
+    from ryusa.study.kept import as_registered, read_ledger
     from ryusa.study.verdicts import refuse_other_study
 
     plan, where = plan_of(quick, full, seeds), executor_at(on, jobs)
@@ -88,6 +88,7 @@ def validate(
     earlier = None if against is None else read_ledger(against)  # first: --json may write the same file
     if earlier is not None:
         refuse_other_study(earlier, VALIDATION.name)
+        earlier = as_registered(VALIDATION, earlier)  # bands that are newer than it judge both
     ledger, files = carried_out(VALIDATION, chosen, plan, out, json, where, again, quiet, earlier, most_seeds)
     _print(ledger)
     finish(ledger, files, out)
@@ -123,14 +124,17 @@ def _print(ledger: "Ledger") -> None:
     from rich.markup import escape
 
     from ryusa.study.entry import plain_entry
-    from ryusa.study.page import interval
+    from ryusa.study.page import checks_of, interval
     from ryusa.study.study import limits_in_words
 
     table = numbers_table()
     for entry in ledger.entries:
         plain = plain_entry(ledger.study, entry, ledger.folder)
+        checks = checks_of(plain)
         said = "; ".join(
-            f"{each['part']} {interval(each)} ({limits_in_words(each)})" for each in plain["trials"]
+            f"{each['part']} {interval(each)} ({limits_in_words(each)}"
+            f"{', check' if each['part'] in checks else ''})"
+            for each in plain["trials"]
         )
         table.add_row(entry.id, plain["verdict"], escape(said or "see below"))
     console().print(table)

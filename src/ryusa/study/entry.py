@@ -48,7 +48,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "robustness": {**plain_count(share), "low": share.low, "high": share.high},
         "readings": list(found.readings),
         "deciding_factor": _deciding(found),
-        "registered": _registered(study, entry),
+        "registered": None,
         **study.about(entry.id),
         "source": "" if found.source is None else found.source.words,
         "known": "" if found.source is None else str(found.source.known),
@@ -62,6 +62,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "problem": entry.problem,
         "pictures": [one.relative_to(folder).as_posix() for one in entry.pictures],
     }
+    plain["registered"] = study.registered(plain)
     return {**plain, "verdict": str(study.said(plain))}
 
 
@@ -76,13 +77,6 @@ def _deciding(found: Finding) -> dict[str, Any] | None:
     if one is None:
         return None
     return plain_effect(one, found.tried(one), "seeds" if found.has_seeds else "settings")
-
-
-def _registered(study: Study, entry: LedgerEntry) -> dict[str, Any] | None:
-    """What was written down beforehand; None in a study without registration."""
-    if study.registration is None or entry.finding is None:
-        return None
-    return study.registration.plain(entry.finding)
 
 
 def _trial(one: Trial) -> dict[str, Any]:

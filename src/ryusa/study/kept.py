@@ -10,7 +10,10 @@ from ryusa.errors import ResultsError
 from ryusa.running.disk import write_atomically
 from ryusa.study.judge import Outcome, base_outcome_of, outcome_of
 from ryusa.study.ledger import FORMAT
+from ryusa.study.origin import json_number
+from ryusa.study.registration import RegisteredBand, RegisteredClaim, outcome_by
 from ryusa.study.said import plain_count, plain_effect
+from ryusa.study.study import Study
 from ryusa.study.verdict import Effect, first_reading, held_of, robustness, settings_within
 
 COMPRESSED = ".xz"
@@ -65,6 +68,40 @@ def read_ledger(path: Path) -> dict[str, Any]:
     if plain["format"] < FORMAT:
         return {**plain, "format": FORMAT, "findings": [_of_settings(one) for one in plain["findings"]]}
     return plain
+
+
+def as_registered(study: Study, plain: Mapping[str, Any]) -> dict[str, Any]:
+    """A ledger with its numbers judged by the bands that are in force now, and by those that were replaced.
+
+    The numbers stay as they are; a band that is newer than the ledger judges those that the ledger has.
+    """
+    return {**plain, "findings": [_judged_anew(study, one) for one in plain["findings"]]}
+
+
+def _judged_anew(study: Study, entry: Mapping[str, Any]) -> dict[str, Any]:
+    claim = None if study.registration is None else study.registration.of(entry["id"])
+    if claim is None:
+        return dict(entry)
+    trials = [_by_band_in_force(claim, one) for one in entry["trials"]]
+    if trials != entry["trials"]:
+        entry = _of_settings({**entry, "trials": trials})
+    now = {**entry, "registered": study.registered(entry)}
+    return {**now, "verdict": str(study.said(now))}
+
+
+def _by_band_in_force(claim: RegisteredClaim, trial: Mapping[str, Any]) -> dict[str, Any]:
+    """A trial with the band in force; one that was shown stays so, for its seeds may not suffice."""
+    entries = claim.entries(trial["part"])
+    if trial["asked"] is None or not entries:
+        return dict(trial)
+    band = entries[-1].band
+    if band is None:
+        return {**trial, "asked": None, "outcome": str(Outcome.SHOWN)}
+    ends = {"low": json_number(band.low), "high": json_number(band.high)}
+    if all(ends[end] == trial["asked"][end] for end in ends):
+        return dict(trial)
+    outcome = outcome_by(RegisteredBand(trial["part"], band, ""), trial["part"], {trial["part"]: trial})
+    return {**trial, "asked": {**ends, "unit": band.unit, "says": band.says}, "outcome": outcome}
 
 
 def _of_settings(entry: Mapping[str, Any]) -> dict[str, Any]:

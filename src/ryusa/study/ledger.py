@@ -218,7 +218,7 @@ def _findings(study: Study, name: str, found: Mapping[Any, Any], plan: Plan) -> 
         raise ValueError(f"{name} judged {', '.join(ids)}, not {', '.join(claims)}")
     if study.registration is not None:
         for one in findings:
-            study.registration.check(one)
+            study.registration.check(one, study.entry_id(name, one))
     return findings
 
 

@@ -9,7 +9,7 @@ from ryusa.study.html import embedded, is_wide, template, write_log
 from ryusa.study.interval import short
 from ryusa.study.kept import write_ledger
 from ryusa.study.ledger import Ledger
-from ryusa.study.said import tally
+from ryusa.study.said import checks, tally
 from ryusa.study.study import LOOKS, Study, limits_in_words
 
 WHOLE_TABLE = 60  # rows; of a longer table the page shows the first HEAD
@@ -68,6 +68,7 @@ def render(
             (headline, n, settings, *LOOKS[outcome])
             for outcome, headline, n, settings in tally(findings, study.said)
         ],
+        "n_checks": checks(findings),
         "looks": {str(one): look for one, look in LOOKS.items()},
         "words": {str(one): word for one, word in study.words.items()},
         "open_sweep": OPEN_SWEEP,
@@ -91,6 +92,7 @@ def _section(
     return {
         **entry,
         "said": study.said(entry),
+        "checks": checks_of(entry),
         "facts": study.facts(entry),
         "images": [(one, embedded(folder / one)) for one in entry["pictures"] if not is_wide(folder / one)],
         "wide": [(one, embedded(folder / one)) for one in entry["pictures"] if is_wide(folder / one)],
@@ -104,6 +106,16 @@ def _section(
         "file": f"{name}/{name}.csv",
         "holder": holder,
     }
+
+
+def checks_of(entry: Mapping[str, Any]) -> Mapping[str, str]:
+    """Why a number of an entry is a check, by the name of the number; those that decide are not in it."""
+    return (entry.get("registered") or {}).get("checks", {})
+
+
+def earlier_of(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Registered entries that were replaced, with the verdict by each."""
+    return (entry.get("registered") or {}).get("earlier", [])
 
 
 def as_shipped(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -142,17 +154,28 @@ def interval(found: Mapping[str, Any]) -> str:
 def summary(study: Study, plain: Mapping[str, Any]) -> str:
     """Return a Markdown table with one line per number, readable in the repository and in `git diff`.
 
-    For a finding with a sweep it lists the case file as it ships; the sweep is in the ledger itself.
+    For a finding with a sweep it lists the case file as it ships; the sweep is in the ledger itself. Bands
+    that were replaced follow, each with its dates and the verdict by it.
     """
     lines = ["| finding | number | value and interval | asked | verdict |", "|---|---|---|---|---|"]
     for one in plain["findings"]:
-        base = [each for each in one["trials"] if each["choices"] == one["trials"][0]["choices"]]
-        verdict = str(study.said(one))
-        for k, each in enumerate(base or [None]):
-            cells = [one["id"], "", "", "", ""] if k == 0 else ["", "", "", "", ""]
-            if each is not None:
-                note = f", {each['note']}" if each["note"] else ""
-                cells[1:4] = [each["part"], interval(each) + note, study.asked(each)]
-            cells[4] = verdict if k == 0 else ""
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        rows = [[*_number_cells(study, one, each), ""] for each in as_shipped(one)] or [[""] * 4]
+        rows[0][3] = str(study.said(one))
+        rows += [[*_earlier_cells(each), f"by it: {each['outcome']}"] for each in earlier_of(one)]
+        for k, cells in enumerate(rows):
+            row = [one["id"] if k == 0 else "", *cells]
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |")
     return "\n".join(lines)
+
+
+def _number_cells(study: Study, entry: Mapping[str, Any], trial: Mapping[str, Any]) -> list[str]:
+    """Number, its value with interval and note, and what is asked of it."""
+    found = interval(trial) + (f", {trial['note']}" if trial["note"] else "")
+    why = checks_of(entry).get(trial["part"])
+    return [trial["part"], found, study.asked(trial) + (f". A check: {why}" if why else "")]
+
+
+def _earlier_cells(each: Mapping[str, Any]) -> list[str]:
+    """An entry that was replaced: number with dates, what it came out as where no ledger has it, limits."""
+    number = f"{each['number']} (as registered on {each['date']}, until {each['replaced']})"
+    return [number, each["came_out"], f"{each['limits']}: {each['reason']}"]

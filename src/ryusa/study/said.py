@@ -2,13 +2,14 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ryusa.study.judge import Outcome
 from ryusa.study.verdict import Count, Effect
 
 SHARE = ("holds", "of", "undecided")
+CHECK = " (check)"
 
 
 @dataclass(frozen=True)
@@ -20,14 +21,18 @@ class SaidVerdict:
     headline : what the case as it ships gives.
     share : in how many settings it holds, as it follows the headline; empty where no choice is varied.
     condition : the levels of the choice without which it holds in none, as it follows; else empty.
+    check : beside the headline of a finding that is a check and no verdict; else empty.
+    first : the verdict by the bands as they were registered first, as it follows, where that is another.
     """
 
     headline: str
     share: str = ""
     condition: str = ""
+    check: str = ""
+    first: str = ""
 
     def __str__(self) -> str:
-        return f"{self.headline}{self.share}{self.condition}"
+        return f"{self.headline}{self.check}{self.share}{self.condition}{self.first}"
 
 
 def said(entry: Mapping[str, Any], word: Callable[[Outcome], str], alone: str = "") -> SaidVerdict:
@@ -43,6 +48,19 @@ def said(entry: Mapping[str, Any], word: Callable[[Outcome], str], alone: str = 
     >>> str(said({"base_outcome": "fails", "robustness": share, "condition": ""}, str))
     'fails as shipped, though it holds in 14 of 17 settings (1 undecided)'
     """
+    registered = entry.get("registered") or {}
+    by_first = registered.get("first", "")
+    other = by_first and by_first != entry["base_outcome"]
+    first = f"; {_by_first(by_first, word)} as first registered" if other else ""
+    check = CHECK if registered.get("check") else ""
+    return replace(_by_settings(entry, word, alone), check=check, first=first)
+
+
+def _by_first(outcome: str, word: Callable[[Outcome], str]) -> str:
+    return word(Outcome(outcome)) if outcome in set(Outcome) else outcome
+
+
+def _by_settings(entry: Mapping[str, Any], word: Callable[[Outcome], str], alone: str) -> SaidVerdict:
     base, count = Outcome(entry["base_outcome"]), count_of(entry["robustness"])
     if base is Outcome.SHOWN or (count.of <= 1 and not alone):
         return SaidVerdict(word(base))
@@ -77,6 +95,8 @@ def tally(
 ) -> list[tuple[Outcome, str, int, str]]:
     """Count findings by the verdict on the case as it ships, and how many of them hold in most settings.
 
+    A check is no verdict and is not among them (`checks`).
+
     Returns
     -------
     Lines with outcome, headline, number, and words on the settings, which are empty where none is varied.
@@ -86,6 +106,8 @@ def tally(
     most: Counter[tuple[str, str]] = Counter()
     for one in entries:
         verdict, share = said_of(one), count_of(one["robustness"])
+        if verdict.check:
+            continue
         condition = ", holds only if one choice is as named" if verdict.condition else ""
         key = one["outcome"], verdict.headline + condition
         counts[key] += 1
@@ -97,6 +119,24 @@ def tally(
         for key, n in counts.items()
         if key[0] == outcome
     ]
+
+
+def checks(entries: Sequence[Mapping[str, Any]]) -> str:
+    """How many findings are checks, and how many of these fail or are undecided; empty if none is.
+
+    >>> checks([{"outcome": "holds", "registered": {"check": True}}, {"outcome": "holds"}])
+    '1 check, which holds'
+    """
+    every = [one["outcome"] for one in entries if (one.get("registered") or {}).get("check")]
+    if not every:
+        return ""
+    left = {what: every.count(what) for what in (Outcome.FAILS, Outcome.UNDECIDED) if what in every}
+    n = len(every)
+    if not left:
+        return "1 check, which holds" if n == 1 else f"{n} checks, which all hold"
+    words = {Outcome.FAILS: "fail", Outcome.UNDECIDED: "are undecided"}
+    some = ", ".join(f"{k} {words[what]}" for what, k in left.items())
+    return f"{n} check{'s' if n > 1 else ''}, of which {some}"
 
 
 def _most_in_words(n: int) -> str:

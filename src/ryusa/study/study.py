@@ -70,7 +70,8 @@ class Study(ABC):
     words : words for what the case as it ships gives, by outcome. "Holds only if" has none, because a verdict
         says what holds as shipped, and then in which settings.
     alone : said where the case as it ships is the only setting, in a study that varies free choices.
-    registration : claims with the bands that judge them; without it a part states its bands itself.
+    registration : claims with the bands that judge them; without it a part states its bands itself. One that
+        is not `whole` has the bands that were changed, and says which numbers are checks.
     template : template of the page; it extends `page.html` of this package.
     """
 
@@ -101,6 +102,12 @@ class Study(ABC):
         """Additional content of an entry in the ledger."""
         del entry
         return {}
+
+    def registered(self, entry: Mapping[str, Any]) -> dict[str, Any] | None:
+        """What is registered of an entry, as the ledger has it; None if nothing is."""
+        if self.registration is None:
+            return None
+        return self.registration.plain(entry["id"], entry["trials"], entry["beside"])
 
     def word(self, entry: str, outcome: Outcome) -> str:
         """Word for what the case as it ships gives, of the entry with this id."""

@@ -34,7 +34,8 @@ def heap(slope, moving=0.0, rolled=0.0):
 
 def of(slopes, plan=STANDARD):
     """A slope per rotation and setting, with a little scatter between seeds."""
-    return {
+    beside = {one: heap(33.0) for runs in fig19.between(plan).values() for one in runs}
+    return beside | {
         fig19.run(chosen, rotation, seed): heap(slopes(rotation, chosen) + 0.2 * (seed % 10 - 2))
         for rotation in fig19.BANDS
         for chosen in fig19.settings(plan)
@@ -63,10 +64,22 @@ def test_every_setting_has_the_same_number_of_heaps_and_both_rotations_the_same_
     runs = fig19.tasks(STANDARD)
     n_settings = len(fig19.settings(STANDARD))
     assert n_settings == 17
-    assert len(runs) == 2 * n_settings * len(STANDARD.seeds)
+    assert len(runs) == (2 * n_settings + len(fig19.BETWEEN)) * len(STANDARD.seeds)
     found = of(lambda rotation, _: fig19.PAPER[rotation])
     for finding in fig19.judge(found, STANDARD):
         assert {one.found.n for one in finding.trials} == {len(STANDARD.seeds)}
+
+
+def test_heaps_with_friction_angles_between_the_levels_stand_beside_and_are_no_settings():
+    locked, free = fig19.judge(of(lambda rotation, _: 60.0), STANDARD)
+    assert [one.choices for one in locked.beside] == [{PHI: phi} for phi in fig19.BETWEEN]
+    assert all(one.holds for one in locked.beside)
+    assert (locked.robustness.holds, locked.robustness.of) == (0, 17)
+    assert not free.beside
+    assert fig19.between(QUICK) == {}
+    one = fig19.between(STANDARD)["12 deg"][0].read()
+    assert one.timeline[0].friction_angle == pytest.approx(math.radians(12.0))
+    assert one.timeline[1].rotation is not None
 
 
 def test_a_heap_settled_with_friction_settles_with_that_of_its_setting():
@@ -98,7 +111,8 @@ def test_heaps_of_other_settings_do_not_change_an_interval():
                 found[fig19.run(one, rotation, seed)] = heap(33.0 + wide + 0.2 * (seed - 2.5))
         return fig19.judge(found, STANDARD)[0].base[0].found
 
-    alone, beside = scatter({}, "none", 0.0), scatter({}, "total", 10.0)
+    between = {one: heap(33.0) for runs in fig19.between(STANDARD).values() for one in runs}
+    alone, beside = scatter(dict(between), "none", 0.0), scatter(dict(between), "total", 10.0)
     assert (alone.low, alone.high) == (beside.low, beside.high)
     assert alone.high - alone.low == pytest.approx(2 * 3.182 * 0.2582 / 2, rel=1e-3)
 

@@ -14,4 +14,6 @@ def _registration() -> Registration:
 
 def band(claim: str, part: str) -> Band:
     """Band of one part of a claim that is in force."""
-    return _registration().claims[claim].entries(part)[-1].band
+    found = _registration().claims[claim].entries(part)[-1].band
+    assert found is not None, f"{claim}: {part} is registered to be shown only"
+    return found

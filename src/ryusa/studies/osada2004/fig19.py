@@ -49,6 +49,8 @@ DESIGN = Design(
 SLOPE_PART, MOVING_PART = "final slope", "share of grains still moving"
 BANDS = {rotation: band(f"fig19-{rotation}", SLOPE_PART) for rotation in ("locked", "free")}
 PAPER = {"locked": 33.0, "free": 18.0}  # deg
+# Slopes of locked heaps pass what is asked between the levels of the friction angle: shown beside.
+BETWEEN = ("12 deg", "14 deg", "16 deg")
 DECIDED = {
     "locked": "A locked grain leaves its pocket only if the slope reaches 30 deg + phi, and columns of "
     "locked grains move as rigid bodies, so the friction angle decides the slope. With the "
@@ -73,9 +75,18 @@ def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     return _heap.run(rotation, seed, changed)
 
 
+def between(plan: Plan) -> dict[str, list[CaseRun]]:
+    """Locked heaps with friction angles between the levels, by angle."""
+    return {
+        phi: [_heap.run("locked", seed, {_heap.PHI_KEY: phi}) for seed in plan.seeds]
+        for phi in plan.pick((), BETWEEN)
+    }
+
+
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Locked and free under every setting and seed."""
+    """Locked and free under every setting and seed, and what stands beside them."""
     runs = [run(one, rotation, seed) for rotation in BANDS for one in settings(plan) for seed in plan.seeds]
+    runs += [one for some in between(plan).values() for one in some]
     return list(dict.fromkeys(runs))
 
 
@@ -119,16 +130,29 @@ def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
         "packing, unless it says so": "settled without friction, turning; phi and rotation set 0.01 s before "
         "the gate goes",
     }
-    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also)
+    beside = tuple(
+        _heap.slope_trial(SLOPE_PART, {PHI: phi}, [found[one] for one in runs], _heap.MEAN, BANDS[rotation])
+        for phi, runs in (between(plan) if rotation == "locked" else {}).items()
+    )
+    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also, beside=beside)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
-    return [
-        {"rotation": rotation, **chosen, "seed": seed, **_heap.line(found[run(chosen, rotation, seed)])}
+    named = [
+        (rotation, chosen, seed, run(chosen, rotation, seed))
         for rotation in BANDS
         for chosen in settings(plan)
         for seed in plan.seeds
+    ]
+    named += [
+        ("locked", {**DESIGN.base, PHI: phi}, seed, one)
+        for phi, runs in between(plan).items()
+        for seed, one in zip(plan.seeds, runs, strict=True)
+    ]
+    return [
+        {"rotation": rotation, **chosen, "seed": seed, **_heap.line(found[one])}
+        for rotation, chosen, seed, one in named
     ]
 
 

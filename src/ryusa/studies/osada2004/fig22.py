@@ -19,7 +19,7 @@ from ryusa.studies.osada2004._factors import (
 )
 from ryusa.studies.osada2004._movable_bed import MovableBedRun, mean, water_of_a_bed
 from ryusa.studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, pseudo_values
+from ryusa.study import Design, Factor, Finding, Interval, Trial, exact, over_seeds, pseudo_values
 
 FIGURE = "fig22"
 TITLE = "Movable bed under water, rotation locked and free"
@@ -60,6 +60,7 @@ MOVERS = 10  # locked, of all seeds and windows, below which nothing is said abo
 STANDS = "nothing moves"
 PART_RODS = "movers in rods minus those with shuffled paths"
 PART_MORE = "movers in rods, locked over free, in decades"
+PART_LESS = "movers in rods, locked minus free"  # judged for two hours of 2026-11-21, as registered; shown
 LEAST = 0.01  # share in rods that counts as least in a ratio
 SETTLED = {
     "d": "0.2 cm",
@@ -127,6 +128,11 @@ def _more(pairs: Runs) -> float:
     return math.nan if math.isnan(locked) else math.log10(max(locked, LEAST) / free)
 
 
+def _difference(pairs: Runs) -> float:
+    """Share in rods, locked minus free."""
+    return _share([locked for locked, _ in pairs]) - _share([free for _, free in pairs])
+
+
 # part -> number of the runs of all seeds together, and the largest magnitude that it can have
 PARTS: Mapping[str, tuple[Callable[[Runs], float], float]] = {
     PART_RODS: (_excess, 1.0),
@@ -140,10 +146,7 @@ def _trial(part: str, chosen: Mapping[str, str], pairs: Runs) -> Trial:
     limits = band("fig22", part)
     if _movers([locked for locked, _ in pairs]) < MOVERS:
         return Trial(part, chosen, exact(math.nan, limits.unit), limits, note=STANDS)
-    spread = over_seeds(pseudo_values(value, pairs), limits.unit)
-    found = replace(
-        spread, low=max(-most, spread.low), high=min(most, spread.high), how=f"jackknife, {spread.how}"
-    )
+    found = _jackknife(value, pairs, most)
     one, other = (
         limits.holds(exact(value(pairs[half::2]), limits.unit)) if len(pairs) > half else None
         for half in (0, 1)
@@ -151,9 +154,20 @@ def _trial(part: str, chosen: Mapping[str, str], pairs: Runs) -> Trial:
     return Trial(part, chosen, found, limits, halves=(one, other))
 
 
+def _jackknife(value: Callable[[Runs], float], pairs: Runs, most: float) -> Interval:
+    """Number of all seeds together with its jackknife over them, cut to what it can be."""
+    spread = over_seeds(pseudo_values(value, pairs), "-")
+    return replace(
+        spread, low=max(-most, spread.low), high=min(most, spread.high), how=f"jackknife, {spread.how}"
+    )
+
+
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Rods where grains are locked, and fewer where they are free."""
     tried = [_trial(part, one, _both(found, plan, one)) for part in PARTS for one in settings(plan)]
+    shipped = _both(found, plan, SHIPPED)
+    if _movers([locked for locked, _ in shipped]) >= MOVERS:
+        tried.append(Trial(PART_LESS, SHIPPED, _jackknife(_difference, shipped, 1.0), None))
     return (
         Finding(
             "fig22",

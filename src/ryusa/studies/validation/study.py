@@ -8,7 +8,9 @@ from typing import Any
 from ryusa.errors import CaseError
 from ryusa.studies.validation.sampling import CLOSED, sampling_lines
 from ryusa.study import Finding, Level, Outcome, Study, StudyPart
-from ryusa.study.page import interval
+from ryusa.study.page import checks_of, interval
+from ryusa.study.registration import Registration
+from ryusa.study.said import checks, tally
 from ryusa.study.study import limits_in_words
 
 NAMES = (
@@ -54,6 +56,7 @@ class ValidationStudy(Study):
         Outcome.SHOWN: "shown",
         Outcome.UNDECIDED: "undecided",
     }
+    registration = Registration.read(Path(__file__).with_name("registration"), whole=False)
     template = Path(__file__).with_name("validation.html")
 
     def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
@@ -92,11 +95,27 @@ def table(plain: Mapping[str, Any]) -> str:
         more = len(row["trials"]) - len(shown)
         errors = [f"{each['part']}: {interval(each)}" for each in shown]
         errors += [f"and {more} more"] if more else []
-        asked = [limits_in_words(each) for each in shown]
+        asked = [limits_in_words(each) + _check(row, each) for each in shown]
         cells = [f"{row['id']}: {row['title']}", row["source"], "<br>".join(errors), "<br>".join(asked)]
         cells.append(str(VALIDATION.said(row)))
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
+
+
+def _check(row: Mapping[str, Any], trial: Mapping[str, Any]) -> str:
+    return " (check)" if trial["part"] in checks_of(row) else ""
+
+
+def counted(plain: Mapping[str, Any]) -> str:
+    """Give how many comparisons have each verdict, how many are checks, and what first entries change."""
+    n = {headline: k for _, headline, k, _ in tally(plain["findings"], VALIDATION.said)}
+    words = ", ".join(f"{k} *{headline}*" for headline, k in n.items())
+    other = sum(bool(VALIDATION.said(one).first) for one in plain["findings"])
+    words += f" ({other} of them other than as first registered)" if other else ""
+    beside = checks(plain["findings"])
+    return f"{len(plain['findings'])} rows: {words}" + (
+        f"; beside these verdicts {beside}." if beside else "."
+    )
 
 
 def changes(plain: Mapping[str, Any]) -> list[str]:
