@@ -9,11 +9,11 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.laws import hertz
 from ryusa.laws.families import DampingLaw, Slip, Unloading
 from ryusa.model import ContactLaw
 from ryusa.model.contact_law import contact_time_of, elastic_spheres
 from ryusa.model.scene import Floats
+from ryusa.studies.validation.one_impact import rebound
 from ryusa.study import (
     Finding,
     Found,
@@ -112,6 +112,7 @@ INELASTIC = {
         (6.196, -0.642), (6.369, -0.591), (7.676, 0.718), (9.316, 2.355),
     ),
 }  # fmt: skip
+JUDGED = "aluminium alloy, with dashpot"  # nylon's constants are from memory
 DASHPOTS = ("without", "with")  # a tangential dashpot
 
 
@@ -139,18 +140,19 @@ def test_6(material: str, dashpot: str, damping_law: str) -> dict[str, Floats]:
 
 
 def half_shear(material: str) -> dict[str, Floats]:
-    """`recoil` of test 5 with tangential springs half as stiff as Mindlin's between a sphere and a plane.
+    """`half`, `whole`: recoil of test 5 with half and all of Mindlin's tangential stiffness, by itself [-].
 
-    So they are where the plane is rigid against the normal force and of the material of the sphere in shear.
+    Half is that of a plane which is rigid against the normal force and elastic in shear.
     """
-    law = _law(material, SMALL, FAST, MU_5, E_5, Unloading.PLAIN)
-    # the engine knows the ratio of both stiffnesses by Poisson's ratio alone: one that gives half of it
-    ratio = 0.5 * hertz.mindlin_ratio(law.poisson_ratio)
-    nu = 2.0 * (1.0 - ratio) / (2.0 - ratio)
-    young = law.youngs_modulus * (1.0 - nu**2) / (1.0 - law.poisson_ratio**2)
-    law = replace(law, poisson_ratio=nu, youngs_modulus=young, k_s=0.5 * law.k_s)
-    psi = [_impact(law, material, SMALL, FAST, theta * MU_5 * FAST, 0.0) for theta, _ in PSI[material]]
-    return {"recoil": np.array([(v_x - SMALL * w) / (MU_5 * v_z) for v_x, v_z, w in psi])}
+    young, nu, rho = MATERIALS[material]
+    found: dict[str, Floats] = {}
+    for name, share in (("half", 0.5), ("whole", 1.0)):
+        after = [
+            rebound(young, nu, rho, SMALL, FAST, theta * MU_5 * FAST, MU_5, share, 4 * int(STEPS))
+            for theta, _ in PSI[material]
+        ]
+        found[name] = np.array([(v_x - SMALL * w) / (MU_5 * v_z) for v_x, v_z, w in after])
+    return found
 
 
 def inelastic(e: float, unloading: str, dashpot: str) -> dict[str, Floats]:
@@ -211,7 +213,7 @@ def _test_6(material: str, dashpot: str, damping_law: DampingLaw = DampingLaw.TS
 
 
 def _half_shear(material: str) -> Task:
-    return calculation(half_shear, material=material, seconds=0.1)
+    return calculation(half_shear, material=material, seconds=1.0)
 
 
 def _inelastic(e: float, unloading: Unloading, dashpot: str = "without") -> Task:
@@ -304,31 +306,31 @@ def _finding_5(
         "Missed: at small angles the published springs have turned the contact point back by 0.75 to 0.9 of "
         "its speed, ours, which solve the equations of design/0018, not at all; finite elements and "
         "Thornton et al. 2013 lie between or with ours. Springs half as stiff in shear meet the published "
-        "curve (recoil-half-shear). Ours slide throughout from 5.8 on, not from 5, as was supposed when the band was registered.",
+        "curve (recoil-half-shear). Ours slide throughout from 5.8 on, not from 5, as was supposed when the "
+        "band was registered.",
         beside=[Curve(one, points[:, 0], points[:, 1]) for one, points in rows.items() if one not in FIVE],
     )  # fmt: skip
 
 
 def _recoil_half_shear(found: Found) -> Finding:
-    rows = {one: np.array(points) for one, points in PSI.items() if one in FIVE}
-    ours = {one: found[_half_shear(one)]["recoil"] for one in FIVE}
+    rows = {one: np.array(PSI[one]) for one in FIVE}
+    ours = {one: found[_half_shear(one)] for one in FIVE}
+    engine = {one: found[_test_5(one, Unloading.PLAIN)]["recoil"] for one in FIVE}
+    same = max(float(np.abs(ours[one]["whole"] - engine[one]).max()) for one in FIVE)
+    off = {one: np.abs(ours[one]["half"] - rows[one][:, 1])[rows[one][:, 0] < SLIDES_5 - 0.1] for one in FIVE}
     return comparison(
         "recoil-half-shear", "Recoil with tangential springs half as stiff as Mindlin's", _source(5),
         Axis("v_t/(mu v_n) before the impact"), Axis("v_t/(mu v_n) after the impact"),
-        [Curve(one, rows[one][:, 0], ours[one]) for one in FIVE],
+        [Curve(one, rows[one][:, 0], ours[one]["half"]) for one in FIVE],
         [Curve(f"{one}, Chung & Ooi", rows[one][:, 0], rows[one][:, 1]) for one in FIVE],
         [
-            misfit(
-                f"{one}, theta < 5",
-                float(np.abs(ours[one] - rows[one][:, 1])[rows[one][:, 0] < SLIDES_5 - 0.1].max()),
-                "-", at_most(0.15, READ),
-            )
-            for one in FIVE
+            *(misfit(f"{one}, theta < 5", float(off[one].max()), "-", at_most(0.15, READ)) for one in FIVE),
+            misfit("with all of Mindlin's stiffness, from the engine", same, "-", at_most(0.1, ARM)),
         ],
         {"e": "1", "mu": "0.3", "normal speed": "5 m/s", "radius": "10 um", "unloading": "plain"},
-        "The cause of the miss of recoil and spin: a program of its own, which integrates one impact, was "
-        "given 0.5, 1, 1.5 and 2 times Mindlin's tangential stiffness; 0.5 alone meets both published curves. "
-        "The plane of test 5 is rigid against the normal force and elastic in shear.",
+        "The cause of the miss of recoil and spin. One impact is integrated apart from the engine: of 0.5, "
+        "1, 1.5 and 2 times Mindlin's tangential stiffness 0.5 alone meets both published curves. The plane "
+        "of test 5 is rigid against the normal force and elastic in shear.",
     )  # fmt: skip
 
 
@@ -361,10 +363,15 @@ def _tangential_restitution(found: Found) -> Finding:
             misfit("sliding branch, closed form q - 1", max(closed[ends]), "-", at_most(0.02, FINE)),
             misfit("as first registered, Tsuji: sliding branch, test 6", max(slid[pulls]), "-"),
             misfit("as first registered, Tsuji: closed form", max(closed[pulls]), "-"),
-            *(misfit(f"sticking branch, {name}", value, "-") for name, value in stuck),
+            *(
+                misfit(f"sticking branch, {name}", value, "-", at_most(0.1, READ) if name == JUDGED else None)
+                for name, value in stuck
+            ),
         ],
         {"e": "0.5", "mu": "0.4", "normal speed": "0.2 m/s", "radius": "0.1 m", "unloading": "plain"},
-        "The source does not print its tangential dashpot: the sticking branch is shown only. While it "
+        "The source does not print its tangential dashpot; with that of EDEM and LIGGGHTS the sticking "
+        "branch is missed, and no ratio of stiffnesses (0.5 to 2.5 times Mindlin's) and dashpots (0 to that "
+        "one) meets both materials within 0.1. While it "
         "slides, a dashpot that pulls at the end (Tsuji) adds up to 6 % of friction impulse to the closed "
         "form; registered with Tsuji, judged with Thornton, whose force ends without pulling.",
     )  # fmt: skip
