@@ -42,9 +42,8 @@ def test_hindered_settling_is_a_check_and_counted_among_no_verdicts():
 
 def test_rows_whose_bands_were_changed_say_what_the_first_entry_gives():
     rows = verdicts()
-    assert rows["hertz-oblique/tangential-restitution"] == "within; missed as first registered"
     assert rows["transport/rate"] == "missed; within as first registered"
-    for name in ("recoil", "spin", "recoil-inelastic"):
+    for name in ("recoil", "spin", "recoil-inelastic", "tangential-restitution"):
         assert rows[f"hertz-oblique/{name}"] == "missed"  # by either
 
 
@@ -52,10 +51,11 @@ def test_the_page_of_a_run_has_both_verdicts_and_says_what_is_a_check(tmp_path):
     bare = {**kept(), "findings": [{**one, "pictures": []} for one in kept()["findings"]]}
     text = unescape(render(VALIDATION, bare, {}, tmp_path))
     assert "within</b> (check)" in text
-    assert "within</b>; missed as first registered" in text
+    assert "missed</b>; within as first registered" in text
     assert "a check: the exponent follows from the hindrance" in text
     assert "until 2026-11-23 the same as first registered: from theta = 5" in text
-    assert "beside them 31 checks, which all hold" in text
+    checks = [verdict for verdict in verdicts().values() if "(check)" in verdict]
+    assert f"beside them {len(checks)} checks, which all hold" in text
 
 
 def test_what_no_kept_run_can_judge_is_said_not_to_be_judged():

@@ -137,8 +137,8 @@ def make(
                 entries[one.id] = one
         if own is not plan:
             seeds |= dict.fromkeys(left, own.seeds)
-        own = own.doubled()
-        left = _undecided(entries.values(), left) if len(own.seeds) <= most_seeds else []
+        left = _undecided(entries.values(), left) if 0 < 2 * len(own.seeds) <= most_seeds else []
+        own = own.doubled() if left else own
     level = "" if plan.level is study.level else f"-{plan.level}"
     return Ledger(
         study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
