@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Question:
+class CaseQuestion:
     """A job of an engineer or a researcher.
 
     Attributes
@@ -22,78 +22,78 @@ class Question:
 
 
 QUESTIONS = (
-    Question(
+    CaseQuestion(
         "How much bed load does my reach carry?", ("bedload_3d", "even_bed", "movable_bed", "saltation"),
         ("ryusa measure RUN transport", "ryusa sweep CASE --seeds 4"),
         "kg/s per metre of width with its error, beside Meyer-Peter & Müller and Wong & Parker",
     ),
-    Question(
+    CaseQuestion(
         "And in a steep or violent flow?", ("sheet_flow", "dense_3d", "dense_plane"),
         ("ryusa measure RUN transport", "ryusa measure RUN profile"),
         "rate, layer that moves, profiles of velocity and concentration",
     ),
-    Question(
+    CaseQuestion(
         "How does a reach change in a flood?", ("river", "fed_river"),
         ("ryusa draw RUN long_section", "ryusa measure RUN discharge"),
         "bed and water along the reach over time; the water is hydrostatic, so no bed forms",
     ),
-    Question(
+    CaseQuestion(
         "What does a weir or a flume with a feeder do?", ("weir", "flume"),
         ("ryusa draw RUN x_t", "ryusa measure RUN discharge", "ryusa measure RUN loads"),
         "jump, ponded depth, grains in and out, force on the weir with the water in it",
     ),
-    Question(
+    CaseQuestion(
         "Will this dam hold, and when is it full?", ("sabo_dam", "dam"),
         ("ryusa measure RUN loads", "ryusa measure RUN deposit"),
         "force and moment of water and grains per metre, volume trapped; the water's impact is not in it",
     ),
-    Question(
+    CaseQuestion(
         "How far does a debris flow run, and what stays?",
         ("slope_break", "debris_flume", "debris_equilibrium"),
         ("ryusa measure RUN front", "ryusa measure RUN deposit"),
         "front over time, deposit, slope it rests at",
     ),
-    Question(
+    CaseQuestion(
         "What does a dam break or a delta do to loose ground?", ("dam_break", "delta"),
         ("ryusa draw RUN long_section", "ryusa measure RUN front"), "wave, erosion, front of the delta",
     ),
-    Question(
+    CaseQuestion(
         "How deep is the scour under a jet or at a pier?", (), (),
         "not to be had: the water of a row is hydrostatic, and has no jet and no flow round a pier",
     ),
-    Question(
+    CaseQuestion(
         "What is the angle of repose of my material?",
         ("poured_heap", "lifted_cylinder", "gravel_heap", "heap"),
         ("ryusa measure RUN cone", "ryusa calibrate STUDY.toml"),
         "slope of the heap with its error; friction and rolling friction from your own test",
     ),
-    Question(
+    CaseQuestion(
         "How fast does my hopper empty?", ("hopper",), ("ryusa measure RUN discharge",),
         "kg/s through the outlet",
     ),
-    Question(
+    CaseQuestion(
         "How far does a column or a slope collapse?", ("column_collapse", "channel_collapse"),
         ("ryusa measure RUN surface",), "run-out and shape of the deposit",
     ),
-    Question(
+    CaseQuestion(
         "What strength does my material have?", ("direct_shear", "shear_cell", "split_bottom"),
         ("ryusa measure RUN direct_shear", "ryusa measure RUN shear"),
         "friction over shear, dilation, profile",
     ),
-    Question(
+    CaseQuestion(
         "How do grains flow, mix and sort in a drum or mill?", ("drum", "mill"),
         ("ryusa measure RUN dynamic_angle", "ryusa measure RUN segregation"), "angle, torque, sorting",
     ),
-    Question(
+    CaseQuestion(
         "How do suspended or mixed grains settle?", ("settling_column", "graded_gravel"),
         ("ryusa measure RUN profile", "ryusa measure RUN segregation"), "hindered settling, sorting of a bed",
     ),
-    Question(
+    CaseQuestion(
         "Does the program do what it says?", ("drop", "box"),
         ("ryusa measure RUN collisions", "ryusa validate --quick"),
         "restitution, contact time, energy account",
     ),
-    Question(
+    CaseQuestion(
         "How soft may I make the springs, and how many seeds do I need?", (),
         ("ryusa soften CASE.toml", "stop.precision in the case"),
         "the softest contacts that do not change the answer; a run that ends by the error of its averages",

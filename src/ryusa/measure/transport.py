@@ -145,8 +145,7 @@ def transport(
     """
     t, first, last, scene, area = window_of(run, begin, end, least=2)
     since, thickness = float(t[0]), layer * scene.d_mean
-    ball = scene.solid_volume
-    dt = np.diff(t)
+    ball, dt = scene.solid_volume, np.diff(t)
     ever = _moved(run, last, ball) / area
     moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
     sums, edge = _sums(run, first, last, scene, 0.0, thickness, None, False)
@@ -179,22 +178,13 @@ def transport(
             "transport",
             (
                 q,
-                replace(
-                    q,
-                    name="q_mass",
-                    unit="kg/s/m",
-                    value=q.value * rho_s,
-                    error=q.error * rho_s,
-                    drift=q.drift * rho_s,
-                ),
-                replace(q, name="q_star", unit="-", value=q.value / scale, error=q.error / scale),
+                _scaled(q, "q_mass", "kg/s/m", rho_s),
+                _scaled(q, "q_star", "-", 1.0 / scale),
                 *_layer(carried, edge * thickness, thickness, window),
                 *([] if stress is None else [stress]),
             ),
             (
-                _of_stress(tau_star, bed),
-                *_beside(tau_star, q.value / scale),
-                "q counts the volume of the grains: 1 m2/s is 1 m3/s for each metre of width",
+                *_of_stress(tau_star, bed, q.value / scale),
                 f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
                 begin_in_words("q_star", times[1:], ever / np.diff(times), settle_time(run), begin),
                 f"transport layer: the middle {MIDDLE:.0%} of the flux; heights above datum, z = 0 of the "
@@ -345,13 +335,21 @@ def _measured(run: Run, begin: float, end: float) -> tuple[Average | None, float
     return found.averages["tau_star"], found.bed
 
 
-def _of_stress(tau_star: float, bed: float) -> str:
-    """Where tau_star comes from."""
+def _of_stress(tau_star: float, bed: float, q_star: float) -> list[str]:
+    """Where tau_star comes from, and what the classical formulae give at it."""
+    unit = "q counts the volume of the grains: 1 m2/s is 1 m3/s for each metre of width"
     if math.isnan(tau_star):
-        return "tau_star: none, without a friction velocity or a column with clear water above a bed"
+        return ["tau_star: none, without a friction velocity or a column with clear water above a bed", unit]
     if math.isnan(bed):
-        return f"tau_star = {tau_star:.4g}, as the case asks for"
-    return f"tau_star: shear stress of the clear water, extrapolated to the bed at z = {bed:.4g} m"
+        return [f"tau_star = {tau_star:.4g}, as the case asks for", *_beside(tau_star, q_star), unit]
+    said = f"tau_star: shear stress of the clear water, extrapolated to the bed at z = {bed:.4g} m"
+    return [said, *_beside(tau_star, q_star), unit]
+
+
+def _scaled(one: Average, name: str, unit: str, factor: float) -> Average:
+    """An average in another unit."""
+    value, error, drift = one.value * factor, one.error * factor, one.drift * factor
+    return replace(one, name=name, unit=unit, value=value, error=error, drift=drift)
 
 
 def _beside(tau_star: float, q_star: float) -> list[str]:
