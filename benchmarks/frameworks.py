@@ -3,11 +3,11 @@
     python benchmarks/frameworks.py           # the short form: all three cases, in 20 minutes on two cores
     python benchmarks/frameworks.py answers speed --seeds 4 --jobs 1 --save frameworks.json
 
-A silo empties, a drum mixes, a ball meets a bed (Comput. Phys. Commun. 296, 109066): the same first grains and
-triangles in every code (`frameworks_cases.py`), the same law as near as each can (`frameworks_codes.py`), the
-same step. `answers` runs whole cases and compares what they say; `speed` times the first part of each with the
-step of the paper and with each code's usual one, on one core and two, in turn. What is done is kept in
-`build/benchmarks/frameworks` and not done again (`--fresh`).
+A silo empties, a drum mixes, a ball meets a bed (Comput. Phys. Commun. 296, 109066): the same first grains
+and triangles in every code (`frameworks_cases.py`), the same law as near as each can
+(`frameworks_codes.py`), the same step. `answers` runs whole cases and compares what they say; `speed` times
+the first part of each with the step of the paper and with each code's usual one, on one core and two, in
+turn. What is done is kept in `build/benchmarks/frameworks` and not done again (`--fresh`).
 """
 
 import argparse
@@ -37,7 +37,7 @@ PEERS = {"ryusa": "LIGGGHTS", "ryusa (Thornton)": "YADE"}  # that have the same 
 BANDS = {
     "rate [1/s]": ("of the peer", 0.05),
     "empty [s]": ("of the peer", 0.05),
-    "index": ("at each quarter of a turn", 0.05),
+    "index": ("at each quarter of a turn, by cubes of three large grains and of two", 0.05),
     "zones": ("root mean square over time, of all M1", 0.05),
     "way [m]": ("at every frame until the ball is deepest", 0.001),
     "end [m]": ("absolute", 0.002),
@@ -61,8 +61,8 @@ def kept_row(path: Path, make: Callable[[], dict[str, Any]], fresh: bool) -> dic
 
 
 def answer(form: str, bulk: Bulk, code: str, seed: int) -> dict[str, Any]:
-    """One whole run and what it says."""
-    folder = WORK / f"{form}-{bulk.name}-{seed}-{code.replace(' ', '-')}"
+    """One whole run; where its grains were over time goes beside."""
+    folder = frames_of(form, bulk.name, code, seed).with_suffix("")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     kept = settled(bulk, seed, WORK / "packings").resolve()
@@ -70,7 +70,12 @@ def answer(form: str, bulk: Bulk, code: str, seed: int) -> dict[str, Any]:
     np.savez_compressed(folder.with_suffix(".npz"), t=t, x=x.astype(np.float32))
     shutil.rmtree(folder)
     about = {"case": bulk.name, "code": code, "seed": seed, "load": os.getloadavg()[0]}
-    return about | asdict(spent) | measured(bulk, kept, t, x)
+    return about | asdict(spent)
+
+
+def frames_of(form: str, name: str, code: str, seed: int) -> Path:
+    """Where the frames of a run are."""
+    return WORK / f"{form}-{name}-{seed}-{code.replace(' ', '-')}.npz"
 
 
 def judge(name: str, rows: Rows) -> Rows:
@@ -199,6 +204,8 @@ def answers(how: argparse.Namespace) -> tuple[Rows, Rows]:
         seed, code, bulk = job
         path = WORK / "rows" / f"{how.form}-{bulk.name}-{code}-{seed}.json"
         row = kept_row(path, partial(answer, how.form, bulk, code, seed), how.fresh)
+        with np.load(frames_of(how.form, bulk.name, code, seed)) as file:
+            row |= measured(bulk, settled(bulk, seed, WORK / "packings"), file["t"], file["x"])
         print(shown(row), flush=True)
         return row
 

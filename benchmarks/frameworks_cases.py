@@ -117,7 +117,7 @@ def forms() -> dict[str, dict[str, Bulk]]:
                          _own(2.5e-5, 3.4e-5, 1.45e-5), opening=0.03),
             "drum": Bulk("drum", (("M2", 4e-3, 400), ("M1", 2e-3, 1500)), 100.0, 0.0368, 0.0221, 0.96,
                          0.02, 8e-6, _own(1.25e-5, 1.7e-5, 8.3e-6), spin=2.0 / 0.368**0.5),
-            "impact": Bulk("impact", (("M1", 2e-3, 4 * kilo),), 1.0, 0.0196, 0.012, 0.03, 5e-4, 5e-7,
+            "impact": Bulk("impact", (("M1", 2e-3, 4 * kilo),), 1.0, 0.0196, 0.012, 0.04, 5e-4, 5e-7,
                            _own(1.25e-6, 1.7e-6, 6.9e-7), ball=8e-3, speed=2.0),
         },
         "full": {
@@ -214,28 +214,32 @@ def _discharge(bulk: Bulk, t: Floats, x: Floats, _d: Floats, _of: Floats) -> dic
 
 
 def _mixing(bulk: Bulk, t: Floats, x: Floats, d: Floats, of: Floats) -> dict[str, Any]:
-    """Lacey's index by volume over cubes of three large grains, and M1 in the zones x, z > 0 and x, z < 0."""
-    small, volume, side = of == 0, d**3, 3.0 * float(d.max())
+    """Lacey's index by volume, and M1 in the quarters of the drum that rise and that fall.
+
+    The paper counts in x, z > 0 and in x, z < 0 of a drum that turns the other way.
+    """
+    small, turns = of == 0, bulk.spin * t / (2.0 * np.pi)
+    found: dict[str, Any] = {"number of M1": int(small.sum()), "t [s]": t.tolist()}
+    for large in (3, 2):
+        index = [_lacey(one, d**3, small, large * float(d.max())) for one in x]
+        found[f"index {large}"] = index
+        for turn in (0.25, 0.5, 0.75, 1.0):
+            if turns[-1] >= turn:
+                found[f"index {large} at {turn} turns"] = float(np.interp(turn, turns, index))
+    up, down = (x[..., 0] < 0) & (x[..., 2] > 0), (x[..., 0] > 0) & (x[..., 2] < 0)
+    counts = [(zone & kind).sum(axis=1) for zone in (up, down) for kind in (small, ~small)]
+    return found | {"zones (M1, M2 in 1, in 2)": np.stack(counts, axis=1).tolist()}
+
+
+def _lacey(x: Floats, volume: Floats, small: Any, side: float) -> float:
+    """Index of mixing over cubes of a side [m] that are half as full as the median one."""
     whole = float(volume[small].sum() / volume.sum())
-    index, zones = [], []
-    for one in x:
-        cell = np.floor(one / side + 1000.0).astype(np.int64) @ np.array([1_000_000, 1000, 1])
-        _, at = np.unique(cell, return_inverse=True)
-        each = np.bincount(at, volume)
-        share = np.bincount(at, np.where(small, volume, 0.0)) / each
-        filled = each > 0.5 * np.median(each)
-        spread = float(np.average((share - whole) ** 2, weights=np.where(filled, each, 0.0)))
-        index.append(1.0 - spread / (whole * (1.0 - whole)))
-        a, b = (one[:, 0] > 0) & (one[:, 2] > 0), (one[:, 0] < 0) & (one[:, 2] < 0)
-        zones.append([int((z & kind).sum()) for z in (a, b) for kind in (small, ~small)])
-    turns = bulk.spin * t / (2.0 * np.pi)
-    stated: dict[str, Any] = {
-        f"index at {turn} turns": float(np.interp(turn, turns, index))
-        for turn in (0.25, 0.5, 0.75, 1.0)
-        if turns[-1] >= turn
-    }
-    stated["number of M1"] = int(small.sum())
-    return stated | {"t [s]": t.tolist(), "index": index, "zones (M1, M2 in 1, in 2)": zones}
+    cell = np.floor(x / side + 1000.0).astype(np.int64) @ np.array([1_000_000, 1000, 1])
+    _, at = np.unique(cell, return_inverse=True)
+    each = np.bincount(at, volume)
+    share = np.bincount(at, np.where(small, volume, 0.0)) / each
+    weight = np.where(each > 0.5 * np.median(each), each, 0.0)
+    return 1.0 - float(np.average((share - whole) ** 2, weights=weight)) / (whole * (1.0 - whole))
 
 
 def _depth(bulk: Bulk, t: Floats, x: Floats, d: Floats, _of: Floats) -> dict[str, Any]:

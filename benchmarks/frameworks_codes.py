@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 from frameworks_cases import DENSITY, FRICTION, MATERIALS, NU, RESTITUTION, YOUNG, Bulk, Floats, G
-from peer import threads_of_one
+from peer import children_of, peak_of, threads_of_one
 from peer_elastic import write_stl
 
 HERE = Path(__file__).resolve().parent
@@ -35,7 +35,7 @@ class Spent:
 
     wall: float  # [s]
     processor: float  # of all its processes [s]
-    memory: float  # of its largest process at most [MB]
+    memory: float  # of all its processes, the most [MB]
 
 
 def carry_out(words: list[str], folder: Path, environment: dict[str, str]) -> Spent:
@@ -45,11 +45,16 @@ def carry_out(words: list[str], folder: Path, environment: dict[str, str]) -> Sp
         process = subprocess.Popen(
             words, cwd=folder, env=environment, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
         )
-        _, status, used = os.wait4(process.pid, 0)
+        peak, status, used = 0, 0, None
+        while used is None:
+            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+            used = usage if pid else None
+            peak = max(peak, sum(peak_of(one) for one in (process.pid, *children_of(process.pid))))
+            time.sleep(0.05)
     process.returncode = os.waitstatus_to_exitcode(status)
     if status:
         raise SystemExit(f"{' '.join(words)[:300]}:\n{log.read_text(errors='replace')[-2000:]}")
-    return Spent(time.perf_counter() - begun, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0)
+    return Spent(time.perf_counter() - begun, used.ru_utime + used.ru_stime, peak / 2.0**20)
 
 
 def steps_of(bulk: Bulk, dt: float) -> tuple[int, int]:
@@ -182,7 +187,7 @@ def run_ryusa(
     words = [sys.executable, "-m", "ryusa", "run", "case.toml", "--out", "run", "--overwrite", "--quiet"]
     spent = carry_out([*words, "--threads", str(threads), *sets], folder, dict(os.environ))
     run = Results.open(folder / "run")
-    places: Floats = np.array([frame.x for frame in run.frames], np.float64)
+    places: Floats = np.stack([frame.x for frame in run.frames])
     return spent, run.frames.t, places
 
 
