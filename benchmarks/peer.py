@@ -110,7 +110,7 @@ def peak_memory(peer: Peer, job: Job, folder: Path) -> int:
 
     def watch() -> None:
         while process.poll() is None:
-            most[0] = max(most[0], *(_peak(pid) for pid in [process.pid, *_children(process.pid)]))
+            most[0] = max(most[0], *(peak_of(pid) for pid in [process.pid, *children_of(process.pid)]))
             time.sleep(0.005)
 
     watcher = threading.Thread(target=watch)
@@ -122,7 +122,8 @@ def peak_memory(peer: Peer, job: Job, folder: Path) -> int:
     return most[0]
 
 
-def _peak(pid: int) -> int:
+def peak_of(pid: int) -> int:
+    """Peak memory of a process so far [B]; 0 where it has ended."""
     try:
         status = Path(f"/proc/{pid}/status").read_text()
     except OSError:
@@ -130,12 +131,13 @@ def _peak(pid: int) -> int:
     return next((int(line.split()[1]) * 1024 for line in status.splitlines() if line.startswith("VmHWM")), 0)
 
 
-def _children(pid: int) -> list[int]:
+def children_of(pid: int) -> list[int]:
+    """Processes that a process started, and those that they did."""
     try:
         found = [int(one) for one in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
     except OSError:
         return []
-    return [*found, *(one for child in found for one in _children(child))]
+    return [*found, *(one for child in found for one in children_of(child))]
 
 
 def threads_of_one(threads: int) -> dict[str, str]:

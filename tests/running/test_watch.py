@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ryusa.build.array_materials import Material, MaterialPair
+from ryusa.build.from_arrays import scene as scene_of_arrays
 from ryusa.errors import CheckpointError
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
 from ryusa.laws.families import ContactTiming
 from ryusa.model import State
-from ryusa.model.contact_law import elastic_spheres
+from ryusa.model.contact_law import elastic_spheres, shortest_contact_of
 from ryusa.running.energy_terms import energy_lines
 from ryusa.running.stops import HOP_RISE, RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
@@ -49,6 +51,23 @@ def test_lanes_of_a_plane_scene_never_meet(scene_with: Any) -> None:
     lanes[:, 1] = [0.0, 0.01, 0.02]
     apart = shortest_collision_time(scene, State.at_rest(lanes))
     assert apart == pytest.approx(math.sqrt(2) * shortest_collision_time(scene, State.at_rest(one)))
+
+
+def test_materials_that_never_meet_do_not_make_the_shortest_contact() -> None:
+    """Walls of steel touch each other only in a drawing: no contact of a run is that of steel on steel."""
+    law = elastic_spheres(
+        1e-5, 5e-4, youngs_modulus=1e8, poisson_ratio=0.2, speed=1.0, restitution=0.5, friction=0.3
+    )
+    x = np.array([[0.0, 0.0, 0.002], [0.01, 0.0, 0.002]])
+    made, state = scene_of_arrays(
+        x, 0.002, contact=law, planes=[("floor", (0, 0, 0), (0, 0, 1))],
+        materials=[Material("steel", youngs_modulus=210e9)], made_of={"floor": "steel"},
+        pairs=[MaterialPair(("grains", "steel"), restitution=0.4, friction=0.2)],
+    )  # fmt: skip
+    assert made.materials is not None
+    m, both, wall = float(made.m[0]), made.materials.contact[0], made.materials.contact[1]
+    expected = min(shortest_contact_of(both, m / 2.0, 0.0005), shortest_contact_of(wall, m, 0.001))
+    assert shortest_collision_time(made, state) == pytest.approx(expected)
 
 
 def test_restitution_is_split_by_partner_and_only_of_isolated_pairs(

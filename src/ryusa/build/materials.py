@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ryusa.build.placement import Placement
 from ryusa.build.sizes import laid_materials
+from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.materials import GRAINS, density, names_of
 from ryusa.model import Traffic
@@ -27,6 +28,10 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
     of = np.zeros(len(placement.d) + len(placement.d_fixed) + len(placement.walls), np.int8)
     for name, which in laid_materials(case, n_first):
         of[which] = names.index(name)
+    made = made_of(case)
+    for group, begin, n in placement.free_groups:
+        if group in made:
+            of[begin : begin + n] = names.index(made[group])
     for feed, keys in zip(traffic.feeds if traffic is not None else (), case.feeds, strict=True):
         of[feed.first : feed.first + feed.count] = names.index(keys.material or GRAINS)
     of[len(placement.d) :] = names.index(case.grains.bed_material or GRAINS)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field
 
 from ryusa.casefile.builders.schema import EmptySection
+from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.builders.values import built_counts, size_range
 from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness, timing
 from ryusa.casefile.grains import OWN_SIZES, CurvePoints, GrainLength, Spread
@@ -113,6 +114,8 @@ def uses(case: "Case") -> Iterator[tuple[str, str]]:
         yield "grains.bed_material", case.grains.bed_material
     for name in case.grains.mixture:
         yield f"grains.mixture.{name}", name
+    for group, name in made_of(case).items():
+        yield f"build.made_of.{group}", name
     for key in ("feeds", "planes", "walls"):
         for k, one in enumerate(getattr(case, key)):
             if one.material is not None:
@@ -122,6 +125,7 @@ def uses(case: "Case") -> Iterator[tuple[str, str]]:
 def free_materials(case: "Case") -> set[str]:
     """Materials of which there are free grains."""
     free = {feed.material or GRAINS for feed in case.feeds} | set(case.grains.mixture)
+    free |= set(made_of(case).values())
     if not isinstance(case.build, EmptySection) and sum(case.grains.mixture.values()) < 1.0 - 1e-9:
         free.add(GRAINS)
     return free or {GRAINS}
@@ -298,7 +302,9 @@ def _names(case: "Case", known: tuple[str, ...]) -> Iterator[CaseError]:
         seen.append(both)
     for name in case.materials:
         if name not in said and name != GRAINS:
-            where = "grains.mixture, grains.bed_material, or material of feeds, planes and walls"
+            where = (
+                "grains.mixture, build.made_of, grains.bed_material, or material of feeds, planes and walls"
+            )
             yield CaseError(f"materials.{name}", None, f"is never used; give it in {where}")
 
 
@@ -343,6 +349,8 @@ def _keys(case: "Case") -> Iterator[CaseError]:
     shares = sum(case.grains.mixture.values())
     if shares > 1.0 + 1e-9:
         yield CaseError("grains.mixture", None, f"has shares that sum to {shares:g}, more than 1")
+    if case.grains.mixture and made_of(case):
+        yield CaseError("grains.mixture", None, "excludes build.made_of; give only one of the two")
     if case.grains.mixture and isinstance(case.build, EmptySection):
         yield CaseError("grains.mixture", None, "has no effect with builder 'empty'; give feeds a material")
 

@@ -20,7 +20,7 @@ from ryusa.laws.families import Adhesion, ContactTiming, WaterTorque
 from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
-from ryusa.model.contact_law import shortest_contact_of, stiffness_key
+from ryusa.model.contact_law import ContactLaw, shortest_contact_of, stiffness_key
 from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
 from ryusa.running.checkpoint import CheckpointBlock
@@ -289,21 +289,37 @@ def energy(tally: Tally) -> dict[str, float]:
 
 
 def shortest_collision_time(scene: Scene, state: State) -> float:
-    """Contact time of the lightest pair that can collide, damped or undamped [s]; inf without grains."""
+    """Contact time of the lightest pair that can collide, damped or undamped [s]; inf without grains.
+
+    With materials the shortest of those that can meet, each with its lightest grains.
+    """
     if scene.n_grain == 0:
         return math.inf
-    m, d, free = scene.m + scene.m_added, scene.d, _free_pairs(scene, state)
+    m, d, free, made = scene.m + scene.m_added, scene.d, _free_pairs(scene, state), scene.materials
+    of = np.zeros(len(m), np.int8) if made is None else made.of[: scene.n_grain]
     if (bodies := scene.bodies) is not None:  # its largest sphere, where it gives way most
         alone = bodies.of_grain(scene.n_grain) < 0
         of_bodies = np.maximum.reduceat(d[bodies.members], np.cumsum(bodies.count) - bodies.count)
         m, d = np.concatenate([m[alone], bodies.least_mass]), np.concatenate([d[alone], of_bodies])
+        of = np.concatenate([of[alone], of[bodies.members[np.cumsum(bodies.count) - bodies.count]]])
         free = len(m) > 1
     order = np.argsort(m, kind="stable")
-    pair = effective_mass(float(m[order[0]]), float(m[order[1]]) if free else math.inf)
-    laws = (scene.contact,) if scene.materials is None else scene.materials.contact
-    r, other = 0.5 * float(d[order[0]]), 0.5 * float(d[order[1]]) if free else math.inf
-    radius = reduced_radius(r, other)
-    return min(shortest_contact_of(law, pair, radius) for law in laws)
+
+    def shortest(law: ContactLaw, i: int, j: int | None) -> float:
+        m_j, r_j = (math.inf, math.inf) if j is None else (float(m[j]), 0.5 * float(d[j]))
+        radius = reduced_radius(0.5 * float(d[i]), r_j)
+        return shortest_contact_of(law, effective_mass(float(m[i]), m_j), radius)
+
+    if made is None:
+        return shortest(scene.contact, int(order[0]), int(order[1]) if free else None)
+    light = [(kind, order[of[order] == kind].tolist()) for kind in np.unique(of).tolist()]
+    still = np.unique(made.of[scene.n_grain :]).tolist()
+    times = [shortest(made.contact[a * made.n + b], grains[0], None) for a, grains in light for b in still]
+    for a, (i, *_) in light if free else ():
+        for b, grains in light:
+            partners = [one for one in grains if one != i]
+            times += [shortest(made.contact[a * made.n + b], i, one) for one in partners[:1]]
+    return min(times, default=math.inf)
 
 
 def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | None]]:

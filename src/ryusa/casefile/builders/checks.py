@@ -14,6 +14,7 @@ from ryusa.casefile.builders.schema import (
     SaltationSection,
     TableSection,
 )
+from ryusa.casefile.builders.table import made_of, table_of
 from ryusa.casefile.builders.values import (
     FEWEST_PERIODS,
     bed_opening,
@@ -33,6 +34,7 @@ from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
 from ryusa.model.enclosure import MeshInside
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -80,6 +82,8 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
             if given(build, key) and build.format not in formats:
                 allowed = f"has no effect with format '{build.format}', only with {', '.join(formats)}"
                 yield CaseError(f"build.{key}", getattr(build, key), allowed)
+    if made_of(case):
+        yield from _made_of(case)
     if isinstance(build, FlumeSection):
         yield from _flume(case, build)
     if isinstance(build, BoxSection):
@@ -88,6 +92,16 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _bed(case, build)
     if isinstance(build, FillSection):
         yield from _fill(case, build)
+
+
+def _made_of(case: "Case") -> Iterator[CaseError]:
+    table = table_of(case)
+    assert table is not None
+    there = sorted({one for one, fixed in zip(table.group, table.fixed, strict=True) if one and not fixed})
+    for group in made_of(case):
+        if group not in there:
+            text = f"is no group of free grains of {table.name}, which has {', '.join(there) or 'none'}"
+            yield CaseError(f"build.made_of.{group}", None, text, nearest_word(group, there))
 
 
 def check_fill(case: "Case") -> Iterator[CaseError]:

@@ -106,6 +106,9 @@ class TableSection(Section):
     """Unit of the masses in a LAMMPS or xyz file, also in its densities."""
     fixed_types: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Atom types of a LAMMPS file whose grains never move; 2 in the dumps of ryusa."""
+    made_of: dict[str, str] = Field(default_factory=dict)
+    """Materials of free grains by their group in the file, such as { ball = "steel" }; the others are of the
+    material of [grains]."""
     allow_overlap: bool = False
     """Whether grains may overlap at the start."""
 
@@ -119,6 +122,9 @@ class RunSection(Section):
     """Run folder, within the folder of the case."""
     at: Moment | None = None
     """Time of the frame, the nearest; the last frame when not given."""
+    made_of: dict[str, str] = Field(default_factory=dict)
+    """Materials of free grains by their group in the run, such as { ball = "steel" }; the others are of the
+    material of [grains]. What a feed brought is a group of its name."""
     allow_overlap: bool = True
     """Whether grains may overlap at the start, as grains in contact do."""
 

@@ -19,7 +19,7 @@ from ryusa.formats.read import read_grains
 from ryusa.formats.text import ReadOptions
 from ryusa.laws.drag import volume
 from ryusa.laws.families import Profile
-from ryusa.model.arrays import Floats
+from ryusa.model.arrays import Bools, Floats
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
@@ -62,6 +62,16 @@ def period_of(case: "Case") -> tuple[float, float]:
     x, y = (case.domain.period_x, case.domain.period_y)
     file_x, file_y = stated or (math.inf, math.inf)
     return (file_x if x is None else x, file_y if y is None else y)
+
+
+def made_of(case: "Case") -> dict[str, str]:
+    """Materials of the first grains by their group in the file."""
+    return case.build.made_of if isinstance(case.build, TableSection | RunSection) else {}
+
+
+def rows_of_material(table: GrainTable, made: dict[str, str], name: str | None) -> Bools:
+    """Which rows are free grains of a material; None is that of [grains]."""
+    return ~table.fixed & np.array([made.get(group) == name for group in table.group], np.bool_)
 
 
 def area_of_file(case: "Case") -> float | None:

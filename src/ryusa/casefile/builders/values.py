@@ -20,7 +20,7 @@ from ryusa.casefile.builders.schema import (
     SaltationSection,
     StreamSection,
 )
-from ryusa.casefile.builders.table import period_of, table_of
+from ryusa.casefile.builders.table import made_of, period_of, rows_of_material, table_of
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
@@ -65,13 +65,11 @@ def size_range(case: "Case", name: str | None) -> tuple[float, float]:
     table = table_of(case)
     if table is None:
         return drawn_range(case, name)
-    of_it = {feed.material for feed in case.feeds if feed.brings}
-    every = table.column("d")[~table.fixed]
-    there = (float(every.min()), float(every.max()))
-    if name not in of_it:
-        return there
-    drawn = drawn_range(case, name)
-    return (min(there[0], drawn[0]), max(there[1], drawn[1]))
+    there = table.column("d")[rows_of_material(table, made_of(case), name)]
+    ranges = [(float(there.min()), float(there.max()))] if len(there) else []
+    if not ranges or name in {feed.material for feed in case.feeds if feed.brings}:
+        ranges.append(drawn_range(case, name))
+    return min(low for low, _ in ranges), max(high for _, high in ranges)
 
 
 def room(case: "Case") -> float:
