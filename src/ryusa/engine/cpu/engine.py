@@ -21,8 +21,9 @@ from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.rigid_bodies import body_arrays, body_shares, body_state, place_members, wrap_bodies
+from ryusa.engine.cpu.snapshot import contact_rows, grain_rows, place_by_id
 from ryusa.engine.cpu.time_loop import PiecesOfStep, run
-from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
+from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory, count_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
@@ -56,6 +57,7 @@ from ryusa.errors import RunError
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
+from ryusa.model.rows import RowsInPieces
 from ryusa.model.scene import EventRule, Floats
 from ryusa.model.state import make_read_only
 from ryusa.model.walls import N_IMPULSE
@@ -121,8 +123,7 @@ class CpuEngine:
             np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC)),
             np.zeros((blocks, scene.n_wall, N_IMPULSE)),
         )  # fmt: skip
-        self._n_list = 0
-        own = self._read_block(state)
+        self._n_list, own = 0, self._read_block(state)
         self._grains, self._pairs = self._layout.grains_by_id(state), self._layout.empty_pairs()
         self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
         # from here on another process may compile what a step needs
@@ -135,7 +136,7 @@ class CpuEngine:
             self._records_drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
         memory = shortened(memory) if has_short_rows(self._variant) else memory
-        by_id = self._layout.grains_by_id(state)
+        by_id = self._grains
         by_id.n_touching[:] = contacts_of_grains(memory, n)
         resumed = own is not None and not changed and not len(dropped)
         self._travel, self._kicked = 0.0, False
@@ -171,36 +172,43 @@ class CpuEngine:
 
     def grains(self) -> State:
         """Where grains are and how they move, without contacts and energy account: a frame."""
-        n, grains = self._n, self._grains
-        back = np.argsort(grains.ids[:n])
+        grains, place = self._grains, place_by_id(self._grains.ids, self._n)
         return State(
-            x=grains.x[:n, :3][back],
-            v=grains.v[:n, :3][back],
-            omega=grains.w[:n, :3][back],
+            x=grains.x[place, :3],
+            v=grains.v[place, :3],
+            omega=grains.w[place, :3],
             step=self._step,
             t=self._t,
-            image=grains.image[back],
+            image=grains.image[place],
             bodies=None if self._bodies is None else body_state(self._bodies),
         )
 
     def state(self) -> State:
         """Read-only snapshot: all that an exact resume needs."""
-        n, grains = self._n, self._grains
-        back = np.argsort(grains.ids[:n])
+        n, grains, place = self._n, self._grains, place_by_id(self._grains.ids, self._n)
         memory = collect_memory(n, grains.ids, self._candidates.pairs, self._share)
         memory = lengthened(memory) if has_short_rows(self._variant) else memory
-        contacts = contacts_of(memory, self._variant)
-        block = self._block()
-        fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(
             self.grains(),
-            contacts=contacts,
+            contacts=contacts_of(memory, self._variant),
             tally=self.tally(),
-            fluid=fluid,
-            engine=block,
+            fluid=FluidAtGrains(grains.fluid[place], grains.impulse[place]) if self._variant.column else None,
+            engine=self._block({"x_listed": self._x_listed[place]}),
         )
         make_read_only(state)
         return state
+
+    def state_in_pieces(self) -> tuple[State, tuple[RowsInPieces, ...]]:
+        """`state` without the arrays of grains and contacts, and these by the names of its fields."""
+        pairs, column, none = self._candidates.pairs, bool(self._variant.column), np.zeros((0, 3))
+        state = State(
+            none, none, none, self._step, self._t, tally=self.tally(), engine=self._block({}),
+            fluid=FluidAtGrains(none, none) if column else None,
+            bodies=None if self._bodies is None else body_state(self._bodies),
+        )  # fmt: skip
+        count, ids = int(count_memory(pairs, self._share)[-1]), self._grains.ids
+        rows = grain_rows(self._grains, self._n, self._x_listed, column)
+        return state, (rows, contact_rows(self._n, ids, pairs, count, self._variant))
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
@@ -385,12 +393,9 @@ class CpuEngine:
                 self._records_drained.append(self._accounts.ended[block, :count].copy())
                 row[S.N_ENDED] = 0.0
 
-    def _block(self) -> EngineBlock:
+    def _block(self, of_grains: dict[str, np.ndarray]) -> EngineBlock:
         """What an exact resume needs beside the state."""
-        arrays = {
-            "x_listed": self._x_listed[np.argsort(self._grains.ids[: self._n])],
-            **account_arrays(self._accounts.stats, self._accounts.terms),
-        }
+        arrays = of_grains | account_arrays(self._accounts.stats, self._accounts.terms)
         if self._layout.walled:
             arrays["walls"] = self._accounts.walls.reshape(len(self._accounts.walls), -1).copy()
             arrays["poses_listed"] = self._poses_listed

@@ -212,26 +212,26 @@ def count_touching(b_0: int, b_1: int, candidates: CandidateArrays, count: Any) 
 
 @kernel(nogil=True)
 def copy_rows_out(
-    b_0: int, b_1: int, n: int, first: Any, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any,
+    k_0: int, k_1: int, t: int, n: int, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any,
     states: Any, eta: Any, rows: Any,
-) -> None:  # fmt: skip
-    """Copy names, states, springs and memory of the pairs in touch of blocks b_0..b_1-1, in list order.
+) -> int:  # fmt: skip
+    """Copy names, states, springs and memory of those of candidates k_0..k_1-1 that touch, in list order.
 
-    Those of block b begin at first[b]. A grain's name is its id, or its place where `ids` is empty.
+    The first goes to place t; returns how many there are. A grain's name is its id, or its place where `ids`
+    is empty.
     """
     candidates, out_i, out_j, states = borrow(candidates), borrow(out_i), borrow(out_j), borrow(states)
     ids, eta, rows = borrow(ids), borrow(eta), borrow(rows)
-    by_id = len(ids) > 0
-    for b in range(b_0, b_1):
-        t = first[b]
-        for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
-            if candidates.touching[k]:
-                i, j = candidates.i[k], candidates.j[k]
-                out_i[t] = ids[i] if by_id else i
-                out_j[t] = ids[j] if by_id and j < n else j
-                states[t] = candidates.touching[k]
-                copy_row(t, eta, rows, k, candidates.eta, candidates.rows)
-                t += 1
+    by_id, first = len(ids) > 0, t
+    for k in range(k_0, k_1):
+        if candidates.touching[k]:
+            i, j = candidates.i[k], candidates.j[k]
+            out_i[t] = ids[i] if by_id else i
+            out_j[t] = ids[j] if by_id and j < n else j
+            states[t] = candidates.touching[k]
+            copy_row(t, eta, rows, k, candidates.eta, candidates.rows)
+            t += 1
+    return t - first
 
 
 @kernel(nogil=True)

@@ -185,20 +185,37 @@ class BlockLayout(Layout):
         return min((k for k in missing if k >= 0), default=-1)
 
 
+def room_for_memory(count: int, candidates: CandidateArrays) -> ContactMemory:
+    """Room for the names and rows of so many pairs of a list of candidates."""
+    eta = candidates.eta
+    return ContactMemory(
+        np.empty(count, np.uint32), np.empty(count, np.uint32), np.empty(count, np.uint8),
+        np.empty((1 if len(eta) == 1 else count, eta.shape[1])), np.empty((count, candidates.rows.shape[1])),
+    )  # fmt: skip
+
+
+def count_memory(candidates: CandidateArrays, share: Share) -> np.ndarray:
+    """Number of the first pair in touch of each block, and of all, (n_block + 1,)."""
+    count = np.zeros(len(candidates.count) + 1, np.int64)
+    share(lambda a, b: count_touching(a, b, candidates, count))
+    return np.cumsum(count)
+
+
 def collect_memory(n: int, ids: np.ndarray, candidates: CandidateArrays, share: Share) -> ContactMemory:
     """Copy the names and rows of all pairs in touch, in list order.
 
     Grains are named by `ids`, or by their places where it is empty.
     """
-    count = np.zeros(len(candidates.count) + 1, np.int64)
-    share(lambda a, b: count_touching(a, b, candidates, count))
-    np.cumsum(count, out=count)
-    total, eta, rows = count[-1], candidates.eta, candidates.rows
-    memory = ContactMemory(
-        np.empty(total, np.int64), np.empty(total, np.int64), np.empty(total, np.uint8),
-        eta.copy() if len(eta) == 1 else np.empty((total, eta.shape[1])), np.empty((total, rows.shape[1])),
-    )  # fmt: skip
-    share(lambda a, b: copy_rows_out(a, b, n, count, candidates, ids, *memory))
+    count = count_memory(candidates, share)
+    memory = room_for_memory(count[-1], candidates)
+    memory.eta[:] = candidates.eta[: len(memory.eta)]
+    ends = candidates.first[:-1] + candidates.count
+
+    def copy_some(first: int, last: int) -> None:
+        for b in range(first, last):
+            copy_rows_out(candidates.first[b], ends[b], count[b], n, candidates, ids, *memory)
+
+    share(copy_some)
     return memory
 
 

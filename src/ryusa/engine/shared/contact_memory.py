@@ -28,6 +28,11 @@ class ContactMemory(NamedTuple):
     eta: Floats
     rows: Floats
 
+    def first(self, count: int) -> "ContactMemory":
+        """The first of the pairs, in the same arrays."""
+        eta = self.eta if len(self.eta) == 1 else self.eta[:count]
+        return ContactMemory(self.i[:count], self.j[:count], self.states[:count], eta, self.rows[:count])
+
 
 def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     """Contacts of a snapshot; the arrays are views of the memory where they can be."""
@@ -42,8 +47,8 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     if variant.exact:  # with which the energy of a spring is f**2/(2 k)
         k_n = eta[:, M.K_N] ** 2 / eta[:, M.STORED]
     return Contacts(
-        i=i,
-        j=j,
+        i=i.astype(np.int64, copy=False),
+        j=j.astype(np.int64, copy=False),
         spring_s=rows[:, M.SPRING_S : M.SPRING_S + 3],
         dash_s=rows[:, M.DASH_S : M.DASH_S + 3],
         dash_n=dash_n,
