@@ -67,9 +67,9 @@ def contact_rows(
         room = room_for_memory(_AT_ONCE, candidates)
         if not count:
             yield piece_of(room.first(0))
-        for first, length in zip(candidates.first[:-1], candidates.count, strict=True):
-            for begin in range(first, first + length, _AT_ONCE):
-                end = min(begin + _AT_ONCE, first + length)
-                yield piece_of(room.first(copy_rows_out(begin, end, 0, n, candidates, ids, *room)))
+        for b, (first, length) in enumerate(zip(candidates.first[:-1], candidates.count, strict=True)):
+            for k in range(first, first + length, _AT_ONCE):
+                found = copy_rows_out(b, b + 1, k, k + _AT_ONCE, n, candidates, ids, *room)
+                yield piece_of(room.first(found))
 
     return RowsInPieces(tuple(f"contacts/{name}" for name in fields), count, pieces)
