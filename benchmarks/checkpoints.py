@@ -36,7 +36,7 @@ from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointSc
 from ryusa.running.disk import free_bytes
 from ryusa.running.guards import energy_created
 from ryusa.running.provenance import processor
-from ryusa.running.snapshot import state_block
+from ryusa.running.snapshot import engine_block
 
 SOONEST = 2.0  # s between two parts at least
 REPEATS = 7
@@ -76,7 +76,7 @@ def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
     scheduler = CheckpointScheduler(folder, {}, scene)
     step = median(lambda: engine.advance(STEPS)) / STEPS
     engine.events()
-    whole = median(lambda: scheduler.write(state_block(engine.state()), scene, {}))
+    whole = median(lambda: scheduler.write(engine_block(engine, None), scene, {}))
     state, tally = engine.state(), engine.tally()
     guard = median(lambda: energy_created(scene, state, tally))
     frame = round(case.record.frames / scene.dt)

@@ -12,7 +12,7 @@ from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu.fluid_forces import make_forces_in_column, make_forces_in_profile
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
-from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.room import zeros
 from ryusa.engine.shared.variant import FluidLaws, LawChoice
 from ryusa.laws.families import Above, Buoyancy, Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import N_SAMPLED, PHI, SUBMERGED
@@ -43,7 +43,7 @@ def words(choice):
 def grains():
     """Rows of grains in water, as the engine keeps them: centres, velocities beside spins, water, masses."""
     rng = np.random.default_rng(5)
-    x, both, fluid = aligned(N, 4), aligned(N, 8), aligned(N, N_SAMPLED)
+    x, both, fluid = zeros(np.float64, N, 4), zeros(np.float64, N, 8), zeros(np.float64, N, N_SAMPLED)
     x[:, :3], x[:, 3] = rng.uniform(-0.002, 0.03, (N, 3)), rng.uniform(0.0005, 0.002, N)
     both[:, :3], both[:, 4:7], both[:, 7] = rng.normal(size=(N, 3)), 50.0 * rng.normal(size=(N, 3)), x[:, 3]
     fluid[:] = rng.normal(size=(N, N_SAMPLED))
@@ -103,7 +103,7 @@ def group(batch, place):
 @pytest.mark.parametrize("choice", CHOICES, ids=words)
 def test_lanes_hold_what_one_grain_in_a_column_feels(choice, grains):
     x, v, w, fluid, m, m_bare, c = grains
-    batch, out = aligned(W.SIZE), np.zeros((N, 7))
+    batch, out = zeros(np.float64, W.SIZE), np.zeros((N, 7))
     in_column(choice, c, v, w, m, m_bare, fluid, batch)
     alone_in_column(choice, c, x, v, w, fluid, out)
     assert np.isfinite(out).all()
@@ -118,7 +118,7 @@ def test_lanes_hold_what_one_grain_in_a_column_feels(choice, grains):
 @pytest.mark.parametrize("choice", GIVEN, ids=words)
 def test_lanes_hold_what_one_grain_in_given_water_feels(choice, grains):
     x, v, w, _, _, _, c = grains
-    batch, out = aligned(W.SIZE), np.zeros((N, 3))
+    batch, out = zeros(np.float64, W.SIZE), np.zeros((N, 3))
     in_profile(choice, c, x, v, w, batch)
     alone_in_profile(choice, c, x, v, out)
     drag = batch[W.K_D : W.K_D + N, None] * group(batch, W.SLIP)[:, :3]
@@ -138,7 +138,7 @@ def test_a_lane_does_not_depend_on_its_place(grains):
         drag=int(Drag.SCHILLER_NAUMANN), hindrance=int(Hindrance.DI_FELICE), lift=int(Lift.SAFFMAN_MEI),
         magnus=int(Magnus.OESTERLE_DINH), torque=int(WaterTorque.DENNIS),
     )  # fmt: skip
-    whole, one = aligned(W.SIZE), aligned(W.SIZE)
+    whole, one = zeros(np.float64, W.SIZE), zeros(np.float64, W.SIZE)
     in_column(choice, c, v, w, m, m_bare, fluid, whole)
     for i in range(N):
         rows = [np.ascontiguousarray(a[i : i + 1]) for a in (m, m_bare, fluid)]
@@ -150,8 +150,8 @@ def test_a_lane_does_not_depend_on_its_place(grains):
 
 def test_no_law_on_lanes_leaves_them_for_a_call_of_the_library(grains):
     x, v, w, fluid, m, m_bare, c = grains
-    column = in_column(CHOICES[0], c, v, w, m, m_bare, fluid, aligned(W.SIZE))
-    profile = in_profile(GIVEN[0], c, x, v, w, aligned(W.SIZE))
+    column = in_column(CHOICES[0], c, v, w, m, m_bare, fluid, zeros(np.float64, W.SIZE))
+    profile = in_profile(GIVEN[0], c, x, v, w, zeros(np.float64, W.SIZE))
     for loop in (column, profile):
         for kinds in loop.entry.signatures:
             compiler = Entry(loop, loop.entry.targetoptions)

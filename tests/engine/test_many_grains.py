@@ -80,6 +80,27 @@ def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
 
 
+def test_contacts_of_grains_that_were_moved_apart_are_found_within_reach_of_the_list():
+    kept = KINDS[SHOWN[0]]
+    made = pile(n=300, stir=0.05, **kept)
+    state = run(made, 6000).state()
+    assert len(state.contacts) > 50
+    for apart, found in ((0.04, True), (3.0, False)):  # in diameters; the list reaches 0.1 beyond touch
+        x = np.array(state.x)
+        x[state.contacts.i[7], 2] += apart * D
+        moved = replace(state, x=x, engine=None)
+        engine = CpuEngine(threads=2)
+        if found:
+            engine.load(made[0], moved)
+            after = engine.state().contacts
+            for name in ("i", "j", "spring_s", "f_n", "event"):
+                rows = [getattr(one, name)[np.lexsort((one.j, one.i))] for one in (state.contacts, after)]
+                assert np.array_equal(*rows, equal_nan=True)
+        else:
+            with pytest.raises(AssertionError, match="is in touch and not in the list"):
+                engine.load(made[0], moved)
+
+
 @pytest.mark.full
 def test_blocks_that_move_early_give_the_bits_of_blocks_that_wait(monkeypatch):
     monkeypatch.setattr(cpu_engine, "blocks_of", lambda n, plane_case: 8)

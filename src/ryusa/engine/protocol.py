@@ -8,6 +8,7 @@ import numpy as np
 
 from ryusa.errors import RunError
 from ryusa.model import Scene, State, Tally
+from ryusa.model.rows import RowsInPieces
 from ryusa.model.scene import Floats
 
 
@@ -83,6 +84,18 @@ class Engine(Protocol):
 
     def events(self) -> np.ndarray:
         """Contacts ended since the last call: structured array of dtype model.EVENT, in order of parting."""
+        ...
+
+
+@runtime_checkable
+class GivesPieces(Protocol):
+    """An engine that gives its snapshot piece by piece, for which there need not be memory beside its own."""
+
+    def state_in_pieces(self) -> tuple[State, tuple[RowsInPieces, ...]]:
+        """Snapshot without the arrays of grains and contacts, and these by the names of its fields.
+
+        A name within a part has a slash, as "contacts/i". They are read before the next step.
+        """
         ...
 
 

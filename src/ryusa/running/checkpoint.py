@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 
 from ryusa.errors import CheckpointError, ResultsError
+from ryusa.model.rows import RowsInPieces
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, read_dataset
 from ryusa.running.disk import sync, write_hdf5_behind_header
@@ -39,10 +40,12 @@ class CheckpointBlock:
     ----------
     values : numbers and names that JSON can represent.
     arrays : by name; a slash separates a group from its members.
+    rows : more arrays, made while they are written; a block that was read has none.
     """
 
     values: dict[str, Any]
     arrays: dict[str, np.ndarray] = field(default_factory=dict[str, np.ndarray])
+    rows: tuple[RowsInPieces, ...] = ()
 
     def block(self, name: str) -> "CheckpointBlock":
         """The numbers and arrays of one group."""
@@ -59,7 +62,8 @@ class CheckpointBlock:
         arrays = {
             f"{name}/{key}": array for name, part in parts.items() for key, array in part.arrays.items()
         }
-        return CheckpointBlock({name: part.values for name, part in parts.items()}, arrays)
+        rows = tuple(one.within(name) for name, part in parts.items() for one in part.rows)
+        return CheckpointBlock({name: part.values for name, part in parts.items()}, arrays, rows)
 
 
 def write_checkpoint(folder: Path, block: CheckpointBlock) -> int:
@@ -69,12 +73,15 @@ def write_checkpoint(folder: Path, block: CheckpointBlock) -> int:
     ------
     OSError : the disk is full or not available; the last checkpoint is unchanged.
     """
-    about = json.dumps({**block.values, "arrays": sorted(block.arrays)}, default=_plain).encode()
+    names = sorted([*block.arrays, *(name for rows in block.rows for name in rows.names)])
+    about = json.dumps({**block.values, "arrays": names}, default=_plain).encode()
 
     def fill(file: h5py.File) -> None:
         file.create_dataset(_ABOUT, data=np.frombuffer(about, dtype=np.uint8))
         for name, array in block.arrays.items():
             file.create_dataset(name, data=array)
+        for rows in block.rows:
+            _write_rows(file, rows)
 
     def head(length: int, digest: str) -> bytes:
         return _MAGIC + f"{length} {digest}\n".encode()
@@ -86,6 +93,20 @@ def write_checkpoint(folder: Path, block: CheckpointBlock) -> int:
     os.replace(temporary, path)
     sync(folder)
     return length
+
+
+def _write_rows(file: h5py.File, rows: RowsInPieces) -> None:
+    """Write arrays piece by piece."""
+    made, begin = dict[str, Any](), 0
+    for piece in rows.pieces():
+        end = begin + len(piece[rows.names[0]])
+        for name in rows.names:
+            part = piece[name]
+            if name not in made:
+                made[name] = file.create_dataset(name, (rows.count, *part.shape[1:]), part.dtype)
+            if begin < end:
+                made[name][begin:end] = part
+        begin = end
 
 
 def read_checkpoint(path: Path, n_grain: int) -> CheckpointBlock:

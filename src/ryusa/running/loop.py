@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
-from ryusa.model import Scene, State
+from ryusa.model import CouplingState, RowCouplingState, Scene, State
 from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
@@ -29,7 +29,7 @@ from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
 from ryusa.running.servo import ServoRule, with_servos
-from ryusa.running.snapshot import state_block
+from ryusa.running.snapshot import engine_block
 from ryusa.running.stops import RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
@@ -237,7 +237,7 @@ class Loop:
         rules = {"traffic": self.traffic, "servo": self.servo}
         parts |= {name: rule.to_block() for name, rule in rules.items() if rule is not None}
         try:
-            self.checkpoints.write(state_block(self.state()), self.scene, parts)
+            self.checkpoints.write(engine_block(self.engine, self._water_now()), self.scene, parts)
         except RyusaError as error:
             self.progress.line(f"no checkpoint written: {error}")
             return
@@ -287,8 +287,11 @@ class Loop:
 
     def state(self) -> State:
         """Snapshot of grains and water, sufficient for an exact resume."""
-        state = self.engine.state()
-        return state if self._water is None else replace(state, coupling=snapshot(self.engine, self._water))
+        state, water = self.engine.state(), self._water_now()
+        return state if water is None else replace(state, coupling=water)
+
+    def _water_now(self) -> CouplingState | RowCouplingState | None:
+        return None if self._water is None else snapshot(self.engine, self._water)
 
     def _chunk(self) -> int:
         return self._pace.steps

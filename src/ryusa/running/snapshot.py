@@ -4,12 +4,13 @@ The restored arrays go to compiled code without bounds checks: an id out of rang
 """
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.engine.protocol import Engine, GivesPieces
 from ryusa.errors import CheckpointError
 from ryusa.model import (
     BodyState,
@@ -28,6 +29,7 @@ from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
+from ryusa.model.rows import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
 from ryusa.running.checkpoint import CheckpointBlock
@@ -47,8 +49,19 @@ _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
 
 
-def state_block(state: State) -> CheckpointBlock:
-    """A state as a block; nested parts have names with slashes."""
+def engine_block(engine: Engine, coupling: CouplingState | RowCouplingState | None) -> CheckpointBlock:
+    """The state of an engine, and of its water, as a block; arrays piece by piece where it gives them so."""
+    state, rows = engine.state_in_pieces() if isinstance(engine, GivesPieces) else (engine.state(), ())
+    return state_block(state if coupling is None else replace(state, coupling=coupling), rows)
+
+
+def state_block(state: State, rows: tuple[RowsInPieces, ...] = ()) -> CheckpointBlock:
+    """A state as a block; nested parts have names with slashes.
+
+    Parameters
+    ----------
+    rows : arrays that take the place of those in the state.
+    """
     values: dict[str, Any] = {}
     arrays: dict[str, np.ndarray] = {}
     _flatten("", state, values, arrays)
@@ -60,7 +73,9 @@ def state_block(state: State) -> CheckpointBlock:
                 arrays[name] = np.where(np.isnan(arrays[name]), 0.0, arrays[name])
     else:
         del arrays["present"]
-    return CheckpointBlock(values, arrays)
+    for name in (name for one in rows for name in one.names):
+        arrays.pop(name, None)
+    return CheckpointBlock(values, arrays, rows)
 
 
 def _flatten(before: str, value: Any, values: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

@@ -9,13 +9,15 @@ from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu import prune_schedule as K
 from ryusa.engine.cpu.body_lanes import body_lanes
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.room import zeros
 
 
 class GrainArrays(NamedTuple):
     """Grains by place. n free grains, n_solid with the fixed ones, n_total with planes and faces.
 
-    Vectors lie in rows of four doubles, a whole vector register; the fourth column is named with each.
+    Vectors lie in rows of four doubles, a whole vector register; the fourth column is named with each. Where
+    nothing is added to masses, as of dry grains that are no members of bodies, `m_bare` and `m_weight` are
+    the first n of `m`.
     """
 
     x: Any  # centres and radius [m], (n_total, 4); inf the radius of planes
@@ -28,10 +30,10 @@ class GrainArrays(NamedTuple):
     inertia: Any  # [kg m2], (n_total,); inf beyond n
     per_m: Any  # one over mass with added mass [1/kg], (n,)
     per_inertia: Any  # one over moment of inertia [1/(kg m2)], (n,)
-    ids: Any  # id of each place, (n_solid,)
+    ids: Any  # id of each place, int32, (n_solid,)
     image: Any  # periods crossed, (n, 2)
-    tracked: Any  # whether its contacts are recorded, by id, (n,)
-    n_touching: Any  # contacts in the last step, (n,)
+    tracked: Any  # whether its contacts are recorded, by id, (n,); (0,) unless some are named
+    n_touching: Any  # contacts in the last step, (n,); (0,) without rolling friction and records
     # force of films in this step [N], and between kicks, with exact timing, shifts times masses [kg m],
     # (rows of `PairArrays.f`, 4); (0, 0) without either
     film: Any
@@ -49,21 +51,22 @@ class PairArrays(NamedTuple):
 
     slab: int  # places between two layers of cells: so much later come partners not met before
     span: int  # blocks that share pairs are at most so many blocks apart, the last one beside the first
-    start: Any  # (n + 1,)
-    partners: Any  # places, (n_pair,)
+    start: Any  # int32, (n + 1,)
+    partners: Any  # places, uint32, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)
     crossing: Any  # numbers of the pairs that cross, (n_cross,)
     active: Any  # 1 where the crossing pair of a row of `f` is a candidate, (n + n_block + n_cross,)
-    incoming_start: Any  # rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
-    incoming: Any  # (n_cross,)
+    incoming_start: Any  # int32; rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
+    incoming: Any  # int32, (n_cross,)
     f: Any  # force [N], nothing, torque [N m] and contacts so far in this step, (n + n_block + n_cross, 8)
 
 
 class CandidateArrays(NamedTuple):
     """Candidate pairs: those that may touch within the next few steps, with the memory of those that do.
 
-    Each block has room for pairs first[b] to first[b + 1], of which count[b] are taken, in the order of the
-    Verlet list.
+    Each block has room for pairs first[b] to first[b + 1], all that it has in the Verlet list, of which
+    count[b] are taken, in the order of that list. What was never taken takes no memory
+    (shared/layout.py: `unwritten`).
     """
 
     first: Any  # (n_block + 1,)
@@ -71,7 +74,6 @@ class CandidateArrays(NamedTuple):
     i: Any  # place of the grain that owns the pair, (n_near,)
     j: Any  # place of its partner
     target: Any  # row of `PairArrays.f` for the partner
-    index: Any  # number in the Verlet list
     touching: Any  # state of the pair (shared/contact_instants.py), 0 where the row holds nothing
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
@@ -82,6 +84,16 @@ class CandidateArrays(NamedTuple):
     slot: Any  # place of each candidate that is one of them among those of its block, (n_near,)
     met: Any  # how grains meet them in a block (faces.py), workspace of its thread, (n_near, N_MET)
     face_count: Any  # how many of them are candidates, (n_block,)
+
+
+class TouchingPairs(NamedTuple):
+    """Pairs in touch of one block, while its candidates are listed anew; columns as of CandidateArrays."""
+
+    i: Any
+    j: Any
+    touching: Any
+    eta: Any
+    rows: Any
 
 
 class WallArrays(NamedTuple):
@@ -130,7 +142,7 @@ class StepArrays(NamedTuple):
     walls: Any  # WallArrays
     pairs: Any  # PairArrays
     candidates: Any  # CandidateArrays
-    spare: Any  # CandidateArrays, room for the pairs in touch of any block, of one thread
+    spare: Any  # TouchingPairs, room for those of any block, of one thread
     accounts: Any  # AccountArrays
     bodies: Any  # BodyArrays (rigid_bodies.py); None where there are none
 
@@ -138,9 +150,9 @@ class StepArrays(NamedTuple):
 def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(
-        aligned(B.SIZE), aligned(W.SIZE), body_lanes(), aligned(4 * B.LANES), aligned(4 * B.LANES),
-        aligned(B.LANES), np.zeros(B.LANES + 1, np.uint32), np.zeros(2 * B.LANES, np.uint32),
-        aligned(K.N_SCHEDULE),
+        zeros(np.float64, B.SIZE), zeros(np.float64, W.SIZE), body_lanes(), zeros(np.float64, 4 * B.LANES),
+        zeros(np.float64, 4 * B.LANES), zeros(np.float64, B.LANES), np.zeros(B.LANES + 1, np.uint32),
+        np.zeros(2 * B.LANES, np.uint32), zeros(np.float64, K.N_SCHEDULE),
     )  # fmt: skip
 
 

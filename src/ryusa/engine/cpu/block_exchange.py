@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.engine.shared.kernel import kernel
+from ryusa.engine.shared.room import zeros
 
 Whole = NDArray[np.int64]
 
@@ -14,10 +15,10 @@ Whole = NDArray[np.int64]
 def number_crossing_pairs(
     n: int,
     block_start: Whole,
-    start: Whole,
+    start: np.ndarray,
     partners: np.ndarray,
     share: Callable[[Callable[[int, int], Any]], list[Any]],
-) -> tuple[Whole, np.ndarray, Whole, Whole, int]:
+) -> tuple[Whole, np.ndarray, np.ndarray, np.ndarray, int]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
     Returns the first of them in each block (n_block + 1); their numbers in the Verlet list; for each grain,
@@ -31,7 +32,7 @@ def number_crossing_pairs(
     np.cumsum(first, out=first)
     crossing = np.empty(first[-1], np.uint32)
     share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, crossing))
-    incoming_start, incoming = np.zeros(n + 1, np.int64), np.empty(first[-1], np.int64)
+    incoming_start, incoming = zeros(np.int32, n + 1), zeros(np.int32, first[-1])
     _list_incoming(n, n + len(block_start) - 1, partners, crossing, incoming_start, incoming)
     return first, crossing, incoming_start, incoming, max(spans)
 

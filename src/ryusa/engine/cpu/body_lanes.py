@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.cpu import fluid_layout as W
-from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.room import zeros
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.rigid_bodies import N_DRAG_FORM
 
@@ -26,9 +26,10 @@ class BodyLanes(NamedTuple):
 
 def body_lanes() -> BodyLanes:
     """Room for one thread."""
-    both = aligned(W.LANES, 8)
+    both = zeros(np.float64, W.LANES, 8)
     return BodyLanes(
-        aligned(W.LANES, 4), both[:, :4], both[:, 4:], np.ones(W.LANES), np.ones(W.LANES),
-        aligned(W.LANES, N_SAMPLED), aligned(W.LANES, N_IMPULSE), np.ones((W.LANES, N_DRAG_FORM)),
+        zeros(np.float64, W.LANES, 4), both[:, :4], both[:, 4:], np.ones(W.LANES), np.ones(W.LANES),
+        zeros(np.float64, W.LANES, N_SAMPLED), zeros(np.float64, W.LANES, N_IMPULSE),
+        np.ones((W.LANES, N_DRAG_FORM)),
         np.zeros((0, 0)),
     )  # fmt: skip

@@ -12,6 +12,7 @@ import numpy as np
 
 from ryusa.engine.cpu.faces import append_faces
 from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.room import zeros
 from ryusa.laws.geometry import wrap
 from ryusa.model.scene import Floats
 
@@ -28,8 +29,8 @@ class Levels(NamedTuple):
     dims: Any  # (n_level, 3)
     cells: Any  # place of its first cell in `first`, (n_level + 1,)
     grains: Any  # place of its first grain in `order`, (n_level + 1,)
-    first: Any  # first slot of each cell within its grid, and one more
-    order: Any  # grains by cell, and by id within a cell
+    first: Any  # first slot of each cell within its grid, and one more, int32
+    order: Any  # grains by cell, and by id within a cell, int32
     r_most: Any  # largest radius [m], (n_level,)
 
 
@@ -61,9 +62,9 @@ def sort_by_cell(x: Floats, n: int, ids: np.ndarray, grid: Grid) -> tuple[np.nda
 
     Returns the first slot of each cell (n_cell + 1), and the numbers in that order.
     """
-    cells = int(np.prod(grid[2]))
-    first, fill, where, order = (np.zeros(k, np.int64) for k in (cells + 1, cells, n, n))
-    _sort(x, n, ids, *grid, first, fill, where, order)
+    first = zeros(np.int32, int(np.prod(grid[2])) + 1)
+    where, order = zeros(np.int32, n), zeros(np.int32, n)
+    _sort(x, n, ids, *grid, first, where, order)
     return first, order
 
 
@@ -75,22 +76,25 @@ def _cell(x: float, low: float, width: float) -> int:
 
 @kernel()
 def _sort(
-    x: Any, n: int, ids: Any, low: Any, width: Any, dims: Any, first: Any, fill: Any, where: Any, order: Any
+    x: Any, n: int, ids: Any, low: Any, width: Any, dims: Any, first: Any, where: Any, order: Any
 ) -> None:
-    # a counting sort, then one by insertion in each cell, of a few grains; `fill` and `where` are room for it
+    # a counting sort, then one by insertion in each cell, of a few grains; `where` is room for it
+    last = len(first) - 1
     for i in range(n):
         a = min(max(_cell(x[i, 0], low[0], width[0]), 0), dims[0] - 1)
         b = min(max(_cell(x[i, 1], low[1], width[1]), 0), dims[1] - 1)
         c = min(max(_cell(x[i, 2], low[2], width[2]), 0), dims[2] - 1)
         where[i] = (a * dims[1] + b) * dims[2] + c
         first[where[i] + 1] += 1
-    for c in range(len(fill)):
-        fill[c] = first[c]
+    for c in range(last):
         first[c + 1] += first[c]
-    for i in range(n):
-        order[fill[where[i]]] = i
-        fill[where[i]] += 1
-    for c in range(len(fill)):
+    for i in range(n):  # the first slot of a cell moves on to that of the next
+        order[first[where[i]]] = i
+        first[where[i]] += 1
+    for c in range(last, 0, -1):
+        first[c] = first[c - 1]
+    first[0] = 0
+    for c in range(last):
         for slot in range(first[c] + 1, first[c + 1]):
             i, free = order[slot], slot
             while free > first[c] and ids[order[free - 1]] > ids[i]:
@@ -141,7 +145,7 @@ def grids_by_size(
     kinds = [int(one) for one in np.unique(level)] or [0]
     grids, firsts, orders, most = list[Grid](), list[np.ndarray](), list[np.ndarray](), list[float]()
     for kind in kinds:
-        some = np.flatnonzero(level == kind) if len(kinds) > 1 else np.arange(n)
+        some = (np.flatnonzero(level == kind) if len(kinds) > 1 else np.arange(n)).astype(np.int32)
         if len(kinds) > 1:
             largest = float(d[some].max())
         grid = grid_of(low, high, len(some), largest + reach, period)

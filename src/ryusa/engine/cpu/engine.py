@@ -1,28 +1,28 @@
 """The CPU engine: owns the arrays, rebuilds the Verlet list, and runs compiled threads in between."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from itertools import pairwise
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ryusa.engine.cpu.arrays import (
     AccountArrays,
-    GrainArrays,
     StepArrays,
     rows_by_id,
     rows_by_place,
     same_column,
     workspace_of_thread,
 )
-from ryusa.engine.cpu.candidate_pairs import CandidatePairs
+from ryusa.engine.cpu.candidate_pairs import NOT_LISTED, CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.rigid_bodies import body_arrays, body_shares, body_state, place_members, wrap_bodies
+from ryusa.engine.cpu.snapshot import contact_rows, grain_rows, place_by_id
+from ryusa.engine.cpu.threads import Threads
 from ryusa.engine.cpu.time_loop import PiecesOfStep, run
-from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
+from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory, count_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
@@ -49,13 +49,14 @@ from ryusa.engine.shared.layout import film_reach
 from ryusa.engine.shared.materials import common_parameters, material_arrays
 from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
-from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
+from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_PAIR, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.engine.shared.wall_pose import BEFORE, set_poses
 from ryusa.errors import RunError
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
+from ryusa.model.rows import RowsInPieces
 from ryusa.model.scene import EventRule, Floats
 from ryusa.model.state import make_read_only
 from ryusa.model.walls import N_IMPULSE
@@ -82,12 +83,8 @@ class CpuEngine:
     name = "cpu"
 
     def __init__(self, threads: int = 1, skin: float = 0.1) -> None:
-        if threads < 1:
-            raise ValueError(f"threads = {threads}: at least 1")
-        self._threads, self._skin_first = threads, skin
+        self._threads, self._skin_first = Threads(threads), skin
         self._work = [workspace_of_thread() for _ in range(threads)]
-        others = threads - 1  # the caller works too
-        self._pool = ThreadPoolExecutor(others, thread_name_prefix="ryusa") if others else None
         self._records_drained: list[np.ndarray] = []
         self._scene: Scene | None = None
 
@@ -121,10 +118,9 @@ class CpuEngine:
             np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC)),
             np.zeros((blocks, scene.n_wall, N_IMPULSE)),
         )  # fmt: skip
-        self._n_list = 0
-        own = self._read_block(state)
+        self._n_list, own = 0, self._read_block(state)
         self._grains, self._pairs = self._layout.grains_by_id(state), self._layout.empty_pairs()
-        self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
+        self._candidates = CandidatePairs(self._layout, self._threads.count, self._smallest)
         # from here on another process may compile what a step needs
         self._pieces = PiecesOfStep(self._variant, self._choice, self._held(0), self._work[0])
 
@@ -135,8 +131,9 @@ class CpuEngine:
             self._records_drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
         memory = shortened(memory) if has_short_rows(self._variant) else memory
-        by_id = self._layout.grains_by_id(state)
-        by_id.n_touching[:] = contacts_of_grains(memory, n)
+        by_id = self._grains
+        if len(by_id.n_touching):
+            by_id.n_touching[:] = contacts_of_grains(memory, n)
         resumed = own is not None and not changed and not len(dropped)
         self._travel, self._kicked = 0.0, False
         if own is not None and resumed:
@@ -146,12 +143,12 @@ class CpuEngine:
         if resumed and own is not None and (faces := self._layout.walls.faces) is not None:
             shape = (len(faces.poses), BEFORE)  # walls too stood elsewhere when the pairs were listed
             faces.poses[:, :BEFORE] = own.array("poses_listed", shape, _FARTHEST)
-        place_of, _ = self._list_pairs(by_id, self._layout.empty_pairs().start)
+        place_of, _ = self._list_pairs(np.zeros(blocks + 1, np.int64))
         self._set_poses()
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._parameters[P.SKIN] = self._skin
-        self._prune(memory, place_of)
+        self._prune(memory.parts(blocks), place_of)
         if state.step == 0:
             begin_account(scene, state, self._accounts.stats, self._accounts.terms)
 
@@ -171,36 +168,43 @@ class CpuEngine:
 
     def grains(self) -> State:
         """Where grains are and how they move, without contacts and energy account: a frame."""
-        n, grains = self._n, self._grains
-        back = np.argsort(grains.ids[:n])
+        grains, place = self._grains, place_by_id(self._grains.ids, self._n)
         return State(
-            x=grains.x[:n, :3][back],
-            v=grains.v[:n, :3][back],
-            omega=grains.w[:n, :3][back],
+            x=grains.x[place, :3],
+            v=grains.v[place, :3],
+            omega=grains.w[place, :3],
             step=self._step,
             t=self._t,
-            image=grains.image[back],
+            image=grains.image[place],
             bodies=None if self._bodies is None else body_state(self._bodies),
         )
 
     def state(self) -> State:
         """Read-only snapshot: all that an exact resume needs."""
-        n, grains = self._n, self._grains
-        back = np.argsort(grains.ids[:n])
+        n, grains, place = self._n, self._grains, place_by_id(self._grains.ids, self._n)
         memory = collect_memory(n, grains.ids, self._candidates.pairs, self._share)
         memory = lengthened(memory) if has_short_rows(self._variant) else memory
-        contacts = contacts_of(memory, self._variant)
-        block = self._block()
-        fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(
             self.grains(),
-            contacts=contacts,
+            contacts=contacts_of(memory, self._variant),
             tally=self.tally(),
-            fluid=fluid,
-            engine=block,
+            fluid=FluidAtGrains(grains.fluid[place], grains.impulse[place]) if self._variant.column else None,
+            engine=self._block({"x_listed": self._x_listed[place]}),
         )
         make_read_only(state)
         return state
+
+    def state_in_pieces(self) -> tuple[State, tuple[RowsInPieces, ...]]:
+        """`state` without the arrays of grains and contacts, and these by the names of its fields."""
+        pairs, column, none = self._candidates.pairs, bool(self._variant.column), np.zeros((0, 3))
+        state = State(
+            none, none, none, self._step, self._t, tally=self.tally(), engine=self._block({}),
+            fluid=FluidAtGrains(none, none) if column else None,
+            bodies=None if self._bodies is None else body_state(self._bodies),
+        )  # fmt: skip
+        count, ids = int(count_memory(pairs, self._share)[-1]), self._grains.ids
+        rows = grain_rows(self._grains, self._n, self._x_listed, column)
+        return state, (rows, contact_rows(self._n, ids, pairs, count, self._variant))
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
@@ -269,30 +273,15 @@ class CpuEngine:
         return sorted_events(rows)
 
     def _advance(self, n_steps: int) -> Flags:
-        layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
-            pieces, held = self._pieces.of_step, [self._held(k) for k in range(threads)]
-            reach, count, faces = film_reach(layout.scene), np.zeros(1, np.int64), layout.walls.faces
-            begin = (threads, n_steps, self._step, self._kicked, self._travel, reach)
-            shared = (*begin, count, pieces, *self._pieces.between_kicks)
-            own = [(one, faces, self._bodies, self._work[k]) for k, one in enumerate(held)]
-            schedule = self._candidates.schedule
-            others = [
-                self._pool.submit(run, k, *shared, *own[k], schedule) for k in range(1, threads) if self._pool
-            ]
-            done, self._travel, stop, self._kicked = run(0, *shared, *own[0], schedule)
-            for other in others:
-                other.result()
-            self._step += done
-            self._since += done
+            done, stop = self._run(n_steps)
             n_steps -= done
-            self._t = float(self._parameters[P.T_ZERO] + self._step * self._parameters[P.DT])
             if stop == STOP_LIST:
                 fault = self._rebuild_list()
                 if fault is not None:
                     return Flags(fault)
-            elif stop == STOP_ROOM:
-                self._candidates.make_room(self._accounts.stats[:, S.ROOM_WANTED])
+            elif stop == STOP_PAIR:
+                raise AssertionError(NOT_LISTED)
             elif stop == STOP_EVENTS:
                 self._drain_records()
             elif stop == STOP_UNSAFE:
@@ -301,8 +290,26 @@ class CpuEngine:
                 )
             elif stop:
                 at = self._step - (not self._kicked)  # of a step that is done, or of the kick of the next
-                return Flags(fault_of(self._accounts.stats, self._parameters, layout.scene, self._grains, at))
+                scene = self._layout.scene
+                return Flags(fault_of(self._accounts.stats, self._parameters, scene, self._grains, at))
         return Flags()
+
+    def _run(self, n_steps: int) -> tuple[int, int]:
+        """Let the threads step; returns how many steps were done, and why they stopped (shared/status.py)."""
+        layout, threads = self._layout, min(self._threads.count, len(self._layout.block_start) - 1)
+        reach, count, faces = film_reach(layout.scene), np.zeros(1, np.int64), layout.walls.faces
+        begin = (threads, n_steps, self._step, self._kicked, self._travel, reach)
+        shared = (*begin, count, self._pieces.of_step, *self._pieces.between_kicks)
+        schedule = self._candidates.schedule
+        calls = [
+            partial(run, k, *shared, self._held(k), faces, self._bodies, self._work[k], schedule)
+            for k in range(threads)
+        ]
+        done, self._travel, stop, self._kicked = self._threads.together(calls)[0]
+        self._step += done
+        self._since += done
+        self._t = float(self._parameters[P.T_ZERO] + self._step * self._parameters[P.DT])
+        return done, stop
 
     def _held(self, thread: int) -> StepArrays:
         """All that a thread reads and writes in a step."""
@@ -315,8 +322,11 @@ class CpuEngine:
 
     def _rebuild_list(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
-        memory = collect_memory(self._n, np.zeros(0, np.int64), self._candidates.pairs, self._share)
-        apart = float(self._pairs.start[-1]) - len(memory.i)  # from counts that a resumed run has too
+        # each list is freed before the next is made
+        room, listed = self._pairs.start[self._layout.block_start], float(self._pairs.start[-1])
+        self._pairs, self._x_listed = self._layout.empty_pairs(), np.zeros((0, 3))
+        memory = self._candidates.take_memory(self._share)
+        apart = listed - sum(len(one.i) for one in memory)  # from counts that a resumed run has too
         skin = best_skin(
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
             COST_TEST * apart / _STEPS_A_CUT,
@@ -326,11 +336,10 @@ class CpuEngine:
         parted = 2.001 * (1 + self._variant.exact) * self._fastest_displacement()
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._most_skin()), parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
-        starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         self._set_poses()
         if self._bodies is not None:
             wrap_bodies(self._bodies, self._layout.period)
-        place_of, lost = self._list_pairs(self._grains, starts)
+        place_of, lost = self._list_pairs(room)
         self._prune(memory, place_of)
         self._parameters[P.SKIN] = self._skin
         if lost < 0:
@@ -343,18 +352,18 @@ class CpuEngine:
         if faces is not None:
             set_poses(c[P.T_ZERO] + self._step * c[P.DT], c[P.DT], faces.motion, faces.poses)
 
-    def _list_pairs(self, grains: GrainArrays, starts: np.ndarray) -> tuple[np.ndarray, int]:
+    def _list_pairs(self, room: np.ndarray) -> tuple[np.ndarray, int]:
         """Sort the grains and list their pairs; returns the new place of each, and a lost grain or -1."""
         if (faces := self._layout.walls.faces) is not None:
             self._poses_listed = faces.poses[:, :BEFORE].copy()
-        self._grains, self._pairs, self._x_listed, place_of, lost = self._layout.list_pairs(
-            grains, starts, self._skin, self._share
-        )
+        found = self._layout.sort_grains(self._grains, self._skin, self._share)
+        self._grains, self._x_listed = found.grains, found.listed
+        self._grains, self._pairs = self._layout.list_pairs(found, room, self._skin, self._share)
         if self._bodies is not None and (bodies := self._layout.scene.bodies) is not None:
             self._bodies = place_members(self._bodies, bodies.members, self._grains.ids[: self._n])
-        return place_of, lost
+        return found.place_of, found.lost
 
-    def _prune(self, memory: ContactMemory, place_of: np.ndarray) -> None:
+    def _prune(self, memory: list[ContactMemory], place_of: np.ndarray) -> None:
         displacement = self._fastest_displacement()
         self._candidates.begin(
             self._pieces.prune, self._held, self._skin, displacement, memory, place_of, self._share
@@ -362,11 +371,7 @@ class CpuEngine:
 
     def _share(self, task: Callable[[int, int], Any]) -> list[Any]:
         """Results of a task for blocks first..last-1, in order, one for each thread."""
-        blocks = len(self._layout.block_start) - 1
-        ends = [k * blocks // self._threads for k in range(self._threads + 1)]
-        parts = [(a, b) for a, b in pairwise(ends) if b > a]
-        others = [self._pool.submit(task, *part) for part in parts[1:]] if self._pool else []
-        return [task(*parts[0]), *(other.result() for other in others)]
+        return self._threads.share(len(self._layout.block_start) - 1, task)
 
     def _most_skin(self) -> float:
         """Largest reach of a list beyond touch [m]: a few grains that hop over a bed go far."""
@@ -385,12 +390,9 @@ class CpuEngine:
                 self._records_drained.append(self._accounts.ended[block, :count].copy())
                 row[S.N_ENDED] = 0.0
 
-    def _block(self) -> EngineBlock:
+    def _block(self, of_grains: dict[str, np.ndarray]) -> EngineBlock:
         """What an exact resume needs beside the state."""
-        arrays = {
-            "x_listed": self._x_listed[np.argsort(self._grains.ids[: self._n])],
-            **account_arrays(self._accounts.stats, self._accounts.terms),
-        }
+        arrays = of_grains | account_arrays(self._accounts.stats, self._accounts.terms)
         if self._layout.walled:
             arrays["walls"] = self._accounts.walls.reshape(len(self._accounts.walls), -1).copy()
             arrays["poses_listed"] = self._poses_listed

@@ -12,7 +12,7 @@ from typing import Any
 from ryusa.compiled.borrow import borrow
 from ryusa.compiled.piece import call, lend, taken
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.arrays import CandidateArrays, PairArrays, StepArrays, Workspace
+from ryusa.engine.cpu.arrays import CandidateArrays, PairArrays, StepArrays, TouchingPairs, Workspace
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.cutoff import mark_approaching, set_relative_velocity, set_separation
 from ryusa.engine.cpu.faces import distance_to
@@ -20,18 +20,18 @@ from ryusa.engine.cpu.simd.vec4 import copy4, fill4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 
-_SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must find room
-
 
 @kernel(nogil=True)
 def prune_blocks(
     piece: Any, first: int, last: int, reach_on: float, ahead: float, plane_case: int, work: Workspace,
-    held: StepArrays, wanted: Any,
-) -> None:  # fmt: skip
-    """Prune the lists of blocks first..last-1; `wanted` gets the room that each needs (see `prune`)."""
+    held: StepArrays,
+) -> bool:  # fmt: skip
+    """Prune the lists of blocks first..last-1; returns whether all pairs in touch were found (`prune`)."""
     lent, lent_work = lend(held), lend(work)
+    found = True
     for b in range(first, last):
-        wanted[b] = call(piece, (b, reach_on, ahead, plane_case, lent_work, lent))[0]
+        found = call(piece, (b, reach_on, ahead, plane_case, lent_work, lent)) >= 0 and found
+    return found
 
 
 @cache
@@ -39,30 +39,27 @@ def make_prune(walled: bool) -> Any:
     """Build the piece that prunes the list of a block: prune(b, reach_on, ahead, plane_case, work, held)."""
 
     @kernel()
-    def prune(
-        b: int, reach_on: float, ahead: float, plane_case: int, work: Any, held: Any
-    ) -> tuple[int, int]:
+    def prune(b: int, reach_on: float, ahead: float, plane_case: int, work: Any, held: Any) -> int:
         """List anew the pairs of block b that come nearer than `reach_on` [m] beyond touch.
 
         They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`;
         or did within the last two steps, and have an account to close: a contact that ends within a step is
-        closed in the next. `spare` has room for the pairs in touch of any block. Returns how much room is
-        wanted where there was too little (the list then holds the pairs in touch alone), 0 where there was
-        enough, -1 where a pair in touch is beyond reach, which should not be; and how many are in touch.
+        closed in the next. `spare` has room for the pairs in touch of any block. Returns how many are in
+        touch, or -1 where one of them is beyond reach, which should not be.
         """
         held, work = taken(held), taken(work)
         c, grains, walls, pairs = held.c, held.grains, held.walls, held.pairs
         candidates, spare, n, n_solid = held.candidates, held.spare, held.n, held.n_solid
         lo, hi = held.block_start[b], held.block_start[b + 1]
         first, n_touching = candidates.first[b], _save_touching(b, candidates, spare)
-        room = candidates.first[b + 1] - first
-        i_of, pair, touching = candidates.i, candidates.index, candidates.touching
+        # numbers in the Verlet list stand where targets come later
+        i_of, j_of, pair, touching = candidates.i, candidates.j, candidates.target, candidates.touching
         x, v, v_pruned, start, partners = grains.x, grains.v, grains.v_pruned, pairs.start, pairs.partners
         points, normals = walls.points, walls.normals
         separation, velocity, inside, owner = work.separation, work.velocity, work.inside, work.selected
         for g in range(lo, hi):
             copy4(v_pruned, 4 * g, v, 8 * g)
-        new, i, full = 0, lo, False
+        new, i = 0, lo
         for begin in range(start[lo], start[hi], B.LANES):
             m = min(B.LANES, start[hi] - begin)
             for l in range(m):
@@ -81,14 +78,9 @@ def make_prune(walled: bool) -> Any:
                 set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
                 set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
             mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
-            full = full or new + m > room
             for l in range(m):  # no branch: which pairs are near is not predictable
-                if not full:
-                    i_of[first + new], pair[first + new] = owner[l], begin + l
+                i_of[first + new], pair[first + new] = owner[l], begin + l
                 new += int(inside[l] > 0.0)
-        if full:
-            _restore_touching(b, n_touching, candidates, spare)
-            return new + _SLACK, n_touching
         candidates.count[b] = new
         _link_partners(b, lo, hi, n, pairs, candidates)
         if walled:
@@ -97,20 +89,23 @@ def make_prune(walled: bool) -> Any:
             touching[k] = 0
         k = first
         for t in range(n_touching):
-            while k < first + new and pair[k] < spare.index[t]:
+            while k < first + new and (i_of[k] != spare.i[t] or j_of[k] != spare.j[t]):
                 k += 1
-            if k == first + new or pair[k] != spare.index[t]:
-                return -1, n_touching
+            if k == first + new:
+                return -1
             touching[k] = spare.touching[t]
             copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
-        return 0, n_touching
+        return n_touching
 
     return prune
 
 
 @inner(forceinline=False)
 def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidates: CandidateArrays) -> None:
-    """Set the partners of the candidates of block b, and the rows where the forces on them go."""
+    """Set the partners of the candidates of block b, and the rows where the forces on them go.
+
+    In place of these stand the numbers of the pairs in the Verlet list.
+    """
     first, rows, crossing, wanted = (
         pairs.cross_start[b],
         n + len(candidates.count),
@@ -122,7 +117,7 @@ def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidat
         wanted[row] = 0
     q = first
     for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
-        p = candidates.index[k]
+        p = candidates.target[k]
         j = pairs.partners[p]
         candidates.j[k] = j
         candidates.target[k] = j if j < n else n + b
@@ -170,34 +165,16 @@ def list_faces(b: int, n_solid: int, candidates: CandidateArrays) -> None:
 
 
 @inner(forceinline=False)
-def _save_touching(b: int, candidates: CandidateArrays, spare: CandidateArrays) -> int:
+def _save_touching(b: int, candidates: CandidateArrays, spare: TouchingPairs) -> int:
     """Copy the pairs in touch of block b; returns how many there are."""
     t = 0
     for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
         if candidates.touching[k]:
             spare.i[t], spare.j[t] = candidates.i[k], candidates.j[k]
-            spare.target[t], spare.index[t] = candidates.target[k], candidates.index[k]
             spare.touching[t] = candidates.touching[k]
             copy_row(t, spare.eta, spare.rows, k, candidates.eta, candidates.rows)
             t += 1
     return t
-
-
-@inner(forceinline=False)
-def _restore_touching(b: int, n_touching: int, candidates: CandidateArrays, spare: CandidateArrays) -> None:
-    """Make the saved pairs the whole list of block b."""
-    first = candidates.first[b]
-    candidates.count[b] = n_touching
-    for t in range(n_touching):
-        k = first + t
-        candidates.i[k], candidates.j[k], candidates.target[k], candidates.index[k] = (
-            spare.i[t],
-            spare.j[t],
-            spare.target[t],
-            spare.index[t],
-        )
-        candidates.touching[k] = spare.touching[t]
-        copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
 
 
 @kernel(nogil=True)
@@ -212,19 +189,20 @@ def count_touching(b_0: int, b_1: int, candidates: CandidateArrays, count: Any) 
 
 @kernel(nogil=True)
 def copy_rows_out(
-    b_0: int, b_1: int, n: int, first: Any, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any,
-    states: Any, eta: Any, rows: Any,
-) -> None:  # fmt: skip
-    """Copy names, states, springs and memory of the pairs in touch of blocks b_0..b_1-1, in list order.
+    b_0: int, b_1: int, k_0: int, k_1: int, n: int, candidates: CandidateArrays, ids: Any, out_i: Any,
+    out_j: Any, states: Any, eta: Any, rows: Any,
+) -> int:  # fmt: skip
+    """Copy names, states, springs and memory of pairs in touch, in list order; returns how many there are.
 
-    Those of block b begin at first[b]. A grain's name is its id, or its place where `ids` is empty.
+    They are those of candidates k_0..k_1-1 that belong to blocks b_0..b_1-1. A grain's name is its id, or its
+    place where `ids` is empty.
     """
     candidates, out_i, out_j, states = borrow(candidates), borrow(out_i), borrow(out_j), borrow(states)
     ids, eta, rows = borrow(ids), borrow(eta), borrow(rows)
-    by_id = len(ids) > 0
+    by_id, t = len(ids) > 0, 0
     for b in range(b_0, b_1):
-        t = first[b]
-        for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
+        first = candidates.first[b]
+        for k in range(max(first, k_0), min(first + candidates.count[b], k_1)):
             if candidates.touching[k]:
                 i, j = candidates.i[k], candidates.j[k]
                 out_i[t] = ids[i] if by_id else i
@@ -232,21 +210,22 @@ def copy_rows_out(
                 states[t] = candidates.touching[k]
                 copy_row(t, eta, rows, k, candidates.eta, candidates.rows)
                 t += 1
+    return t
 
 
 @kernel(nogil=True)
 def copy_rows_in(
-    t_0: int, t_1: int, n: int, block_start: Any, candidates: CandidateArrays, place_of: Any, i_of: Any,
-    j_of: Any, states: Any, eta: Any, rows: Any,
+    n: int, block_start: Any, candidates: CandidateArrays, place_of: Any, i_of: Any, j_of: Any, states: Any,
+    eta: Any, rows: Any,
 ) -> int:  # fmt: skip
-    """Copy contacts t_0..t_1-1 into a new list; returns the first one that is not in it, or -1.
+    """Copy contacts into a new list, until one is not in it; returns how many were copied.
 
     `place_of` turns the name of a free grain into its place.
     """
     candidates, place_of, i_of, j_of = borrow(candidates), borrow(place_of), borrow(i_of), borrow(j_of)
     states, eta, rows = borrow(states), borrow(eta), borrow(rows)
     b = 0
-    for t in range(t_0, t_1):
+    for t in range(len(i_of)):
         i = place_of[i_of[t]]
         j = place_of[j_of[t]] if j_of[t] < n else j_of[t]
         while i < block_start[b]:
@@ -267,4 +246,4 @@ def copy_rows_in(
             return t
         copy_row(low, candidates.eta, candidates.rows, t, eta, rows)
         candidates.touching[low] = states[t]
-    return -1
+    return len(i_of)

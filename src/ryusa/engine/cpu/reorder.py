@@ -9,7 +9,7 @@ from ryusa.compiled.borrow import borrow
 from ryusa.engine.cpu.arrays import GrainArrays
 from ryusa.engine.cpu.simd.vec4 import copy4
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.room import zeros
 
 
 @kernel(nogil=True)
@@ -40,17 +40,21 @@ def wrap_grains(
     return lost
 
 
+def _like(array: np.ndarray) -> np.ndarray:
+    return zeros(array.dtype, *array.shape)
+
+
 def like(n: int, old: GrainArrays) -> GrainArrays:
     """Room for n free grains in another order, with the fixed ones of `old`; `v_pruned` is shared."""
-    both = aligned(len(old.x), 8)
+    both = zeros(np.float64, len(old.x), 8)
     new = {
-        name: np.empty_like(getattr(old, name))
-        for name in (
-            "m", "m_bare", "m_weight", "inertia", "per_m", "per_inertia", "ids", "image", "n_touching",
-            "fluid", "impulse",
-        )
-    }  # fmt: skip
-    grains = old._replace(x=aligned(len(old.x), 4), v=both[:, :4], w=both[:, 4:], **new)
+        name: _like(getattr(old, name))
+        for name in ("m", "inertia", "per_m", "per_inertia", "ids", "image", "n_touching", "fluid", "impulse")
+    }
+    for name in ("m_bare", "m_weight"):
+        mass = getattr(old, name)
+        new[name] = new["m"][:n] if np.may_share_memory(mass, old.m) else _like(mass)
+    grains = old._replace(x=zeros(np.float64, len(old.x), 4), v=both[:, :4], w=both[:, 4:], **new)
     for name in ("x", "v", "w", "m", "inertia", "ids"):
         getattr(grains, name)[n:] = getattr(old, name)[n:]
     return grains
@@ -65,7 +69,7 @@ def move_grains(
     `place_of` gets the new place of each old one, `listed` the positions [m] by new place.
     """
     old, new = borrow(old), borrow(new)
-    with_fluid = len(old.fluid) > 0
+    with_fluid, counted = len(old.fluid) > 0, len(old.n_touching) > 0
     for p in range(lo, hi):
         i = order[p]
         place_of[i] = p
@@ -76,7 +80,9 @@ def move_grains(
             listed[p, k] = old.x[i, k]
         new.m[p], new.m_bare[p], new.m_weight[p] = old.m[i], old.m_bare[i], old.m_weight[i]
         new.inertia[p], new.per_m[p], new.per_inertia[p] = old.inertia[i], old.per_m[i], old.per_inertia[i]
-        new.ids[p], new.n_touching[p] = old.ids[i], old.n_touching[i]
+        new.ids[p] = old.ids[i]
+        if counted:
+            new.n_touching[p] = old.n_touching[i]
         new.image[p, 0], new.image[p, 1] = old.image[i, 0], old.image[i, 1]
         if with_fluid:
             for k in range(old.fluid.shape[1]):

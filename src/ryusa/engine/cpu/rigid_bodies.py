@@ -25,7 +25,7 @@ from ryusa.engine.cpu.simd.vec4 import component, vec4_of
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST
-from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.room import zeros
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
 from ryusa.engine.shared.variant import MotionKind
 from ryusa.laws.grain_step import kinetic_energy, potential_energy, translation_step, unwrapped
@@ -88,7 +88,7 @@ def body_arrays(scene: Scene, bodies: RigidBodies, state: BodyState) -> BodyArra
 
 
 def _rows_of_four(given: Floats) -> Floats:
-    rows = aligned(len(given), 4)
+    rows = zeros(np.float64, len(given), 4)
     rows[:, : given.shape[1]] = given
     return rows
 

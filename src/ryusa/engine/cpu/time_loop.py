@@ -4,7 +4,6 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numba
-import numpy as np
 
 from ryusa.compiled.beside import Beside, Wanted
 from ryusa.compiled.borrow import borrow
@@ -29,7 +28,7 @@ from ryusa.engine.shared.status import (
     STOP_EVENTS,
     STOP_FAULT,
     STOP_LIST,
-    STOP_ROOM,
+    STOP_PAIR,
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice, forces_kind, motion_kind
@@ -189,7 +188,7 @@ def run(
             own[K.LASTS] = steps_ahead(own, fastest * dt)
             reach_on = ROUNDED_UP * own[K.SKIN] + film_reach
             for b in range(b_0, b_1):
-                stats[b, S.ROOM_WANTED], stats[b, S.N_TOUCHING] = call(
+                stats[b, S.N_TOUCHING] = call(
                     pieces.prune, (b, reach_on, own[K.LASTS] * dt, plane, lent_work, lent)
                 )
             target = wait(count, n_threads, target)
@@ -197,10 +196,9 @@ def run(
             for b in range(n_block):
                 own[K.CANDIDATES] += candidates.count[b]
                 own[K.TOUCHING] += stats[b, S.N_TOUCHING]
-                if stats[b, S.ROOM_WANTED] != 0.0:
-                    stop = STOP_ROOM
+                if stats[b, S.N_TOUCHING] < 0.0:
+                    stop = STOP_PAIR
             if stop != STOP_DONE:
-                own[K.APPROACH] = np.inf
                 break
         # A block moves as soon as the blocks within `span` have their forces, while its grains are still in
         # the cache. Those that share pairs with blocks of other threads move after the barrier.

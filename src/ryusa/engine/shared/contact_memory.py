@@ -1,6 +1,7 @@
 """Memory of the contacts of a state, as rows that an engine keeps and as the model's Contacts."""
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,24 @@ class ContactMemory(NamedTuple):
     eta: Floats
     rows: Floats
 
+    def first(self, count: int) -> "ContactMemory":
+        """The first of the pairs, in the same arrays."""
+        return self._part(slice(count))
+
+    def after(self, count: int) -> "ContactMemory":
+        """The pairs but for the first, in the same arrays."""
+        return self._part(slice(count, None))
+
+    def parts(self, count: int) -> "list[ContactMemory]":
+        """The pairs in so many parts; their names are uint32, as places are, the arrays else the same."""
+        named = self._replace(i=self.i.astype(np.uint32), j=self.j.astype(np.uint32))
+        ends = [k * len(self.i) // count for k in range(count + 1)]
+        return [named._part(slice(*ends_of)) for ends_of in pairwise(ends)]
+
+    def _part(self, some: slice) -> "ContactMemory":
+        eta = self.eta if len(self.eta) == 1 else self.eta[some]
+        return ContactMemory(self.i[some], self.j[some], self.states[some], eta, self.rows[some])
+
 
 def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     """Contacts of a snapshot; the arrays are views of the memory where they can be."""
@@ -42,8 +61,8 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     if variant.exact:  # with which the energy of a spring is f**2/(2 k)
         k_n = eta[:, M.K_N] ** 2 / eta[:, M.STORED]
     return Contacts(
-        i=i,
-        j=j,
+        i=i.astype(np.int64, copy=False),
+        j=j.astype(np.int64, copy=False),
         spring_s=rows[:, M.SPRING_S : M.SPRING_S + 3],
         dash_s=rows[:, M.DASH_S : M.DASH_S + 3],
         dash_n=dash_n,
@@ -63,19 +82,19 @@ def memory_of(
 ) -> ContactMemory:
     """Rows from a snapshot; dashpots follow from masses anew, but one that a film has fixed stays."""
     rows = np.zeros((len(contacts), variant.row_width))
-    eta, x = np.zeros((len(contacts), variant.springs)), np.zeros((len(layout.r), 4))
-    x[:, 3] = layout.r
+    m, inertia, x = layout.m, layout.inertia, np.zeros((layout.n_total, 4))
+    eta, x[:, 3] = np.zeros((len(contacts), variant.springs)), layout.r
     for scene, some in layout.scene.by_pair(contacts.i, contacts.j):
         mine, law = np.empty((len(contacts.i[some]), variant.springs)), numbers
         if layout.scene.materials is not None:
             law = parameters_of(scene)
         make_springs_of(variant.kind)(
-            contacts.i[some], contacts.j[some], variant.rotation, law, layout.m, x, layout.inertia, mine
+            contacts.i[some], contacts.j[some], variant.rotation, law, m, x, inertia, mine
         )
         if choice.rebound:
             mine[:, M.ETA_N] = contacts.eta_n[some]
         if choice.rebound and variant.exact:
-            normal_springs_of(contacts.i[some], contacts.j[some], law, layout.m, mine)
+            normal_springs_of(contacts.i[some], contacts.j[some], law, m, mine)
         eta[some] = mine
     rows[:, M.SPRING_S : M.SPRING_S + 3], rows[:, M.DASH_S : M.DASH_S + 3] = (
         contacts.spring_s,

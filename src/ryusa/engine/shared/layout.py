@@ -1,24 +1,15 @@
 """Arrays of a scene and a state by id, in rows of four doubles: what engines start from."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from ryusa.engine.shared.room import zeros
 from ryusa.engine.shared.variant import KernelVariant
 from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rebound
 from ryusa.model import FluidAtGrains, Scene, State
+from ryusa.model.arrays import Bools
 from ryusa.model.scene import Damping, Floats
-
-_CACHE_LINE = 64  # [B]
-
-
-def aligned(*shape: int) -> Floats:
-    """Zeros that begin at a cache line: rows of eight doubles then take one line each, not two."""
-    size = 8 * math.prod(shape)
-    raw = np.zeros(size + _CACHE_LINE, np.uint8)
-    first = -raw.ctypes.data % _CACHE_LINE
-    return raw[first : first + size].view(np.float64).reshape(shape)
 
 
 class StateArrays(NamedTuple):
@@ -36,18 +27,9 @@ class Layout:
     """What engines need of a scene, by id: n free grains, n_solid with fixed ones, n_total with walls."""
 
     def __init__(self, scene: Scene, variant: KernelVariant) -> None:
-        n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane + scene.n_face
-        self.n, self.n_solid, self.variant = n, n + n_fixed, variant
-        inf = np.full(n_fixed + n_plane, np.inf)
-        self.r = np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, np.full(n_plane, np.inf)])
-        self.largest = 2.0 * float(self.r[: self.n_solid].max(initial=0.0))
-        self.m = np.concatenate([scene.m + scene.m_added, inf])
-        self.inertia = np.concatenate([scene.inertia, inf])
-        if (bodies := scene.bodies) is not None:  # contacts see the body
-            whole = bodies.m + bodies.sums(scene.m_added[bodies.members])
-            self.m[bodies.members] = np.repeat(whole, bodies.count)
-            self.inertia[bodies.members] = np.repeat(bodies.inertia.mean(axis=1), bodies.count)
-        self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
+        self.n, self.n_solid, self.variant = scene.n_grain, scene.n_grain + scene.n_fixed, variant
+        self.n_total = scene.n_partner
+        self.largest = float(max(scene.d.max(initial=0.0), scene.d_fixed.max(initial=0.0)))
         law, water = scene.contact, scene.water
         constant = law.damping == Damping.CONSTANTS and law.timing == ContactTiming.AT_STEPS
         constant = constant and law.force == ContactForce.LINEAR
@@ -60,23 +42,58 @@ class Layout:
         self.x_fixed = np.array(scene.x_fixed, dtype=np.float64).reshape(-1, 3)
         for k in np.flatnonzero(np.isfinite(self.period)):
             self.x_fixed[:, k] %= self.period[k]
-        self.standing = np.flatnonzero(scene.fixed_active)
+        self.standing = np.flatnonzero(scene.fixed_active).astype(np.int32)
+
+    # Arrays by id are made when they are asked for: an engine keeps its own, in its own order.
+
+    @property
+    def r(self) -> Floats:
+        """Radii [m], inf of planes and faces, (n_total,)."""
+        scene = self.scene
+        return np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, self._infinite(self.n_solid)])
+
+    @property
+    def m(self) -> Floats:
+        """Masses with added mass that contacts see, of members those of their body [kg], (n_total,)."""
+        scene = self.scene
+        m = np.concatenate([scene.m + scene.m_added, self._infinite(self.n)])
+        if (bodies := scene.bodies) is not None:
+            whole = bodies.m + bodies.sums(scene.m_added[bodies.members])
+            m[bodies.members] = np.repeat(whole, bodies.count)
+        return m
+
+    @property
+    def inertia(self) -> Floats:
+        """Moments of inertia that contacts see [kg m2], (n_total,)."""
+        inertia = np.concatenate([self.scene.inertia, self._infinite(self.n)])
+        if (bodies := self.scene.bodies) is not None:
+            inertia[bodies.members] = np.repeat(bodies.inertia.mean(axis=1), bodies.count)
+        return inertia
+
+    @property
+    def tracked(self) -> Bools:
+        """Whether contacts of a grain are recorded where not all are, (n,)."""
+        kept = self.scene.tracked
+        return kept if len(kept) == self.n else np.zeros(self.n, np.bool_)
+
+    def _infinite(self, first: int) -> Floats:
+        return np.full(self.n_total - first, np.inf)
 
     def by_id(self, state: State) -> StateArrays:
         """Arrays of a state, in the order of ids."""
-        n, scene = self.n, self.scene
-        still = np.zeros((len(self.r) - n, 3))
+        n, scene, r = self.n, self.scene, self.r
+        still = np.zeros((len(r) - n, 3))
         image = np.array(state.image, dtype=np.int32) if len(state.image) == n else np.zeros((n, 2), np.int32)
         spin = state.omega if scene.rotation else np.zeros((n, 3))
         none = FluidAtGrains(np.zeros((0, 0)), np.zeros((0, 0)))
         if scene.water.profile == Profile.COLUMN:
             none = FluidAtGrains.at_rest(n)
         fluid = state.fluid or none
-        both = aligned(len(self.r), 8)
-        x, v, w = aligned(len(self.r), 4), both[:, :4], both[:, 4:]
+        both = zeros(np.float64, len(r), 8)
+        x, v, w = zeros(np.float64, len(r), 4), both[:, :4], both[:, 4:]
         x[:, :3] = np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]])
         v[:n, :3], w[:n, :3] = state.v, spin
-        x[:, 3] = w[:, 3] = self.r
+        x[:, 3] = w[:, 3] = r
         return StateArrays(x, v, w, image, np.array(fluid.sampled), np.array(fluid.impulse))
 
 

@@ -12,4 +12,4 @@ STOP_LIST = 1  # the Verlet list has to be rebuilt
 STOP_EVENTS = 2  # event buffers want draining
 STOP_FAULT = 3
 STOP_UNSAFE = 4  # a grain went further in one step than the list allows
-STOP_ROOM = 5  # the candidate pairs need more room
+STOP_PAIR = 5  # a pair in touch is not in the Verlet list, which should not be
