@@ -15,6 +15,7 @@ class Claim:
     says: str
     free: str = ""  # what the text does not fix
     caution: str = ""  # what we found about the claim itself
+    words: tuple[str, str] | None = None  # where it holds, where it fails; else those of its kind
 
 
 _SALTATION = (
@@ -36,6 +37,7 @@ _RIVER = (
 )
 _HEAP = "heap between walls, mean d 0.2 cm, e = 0.7, one side wall removed at once"
 _BOX = "42 grains of 0.2 cm fall into a box of fixed grains, e = 0.7"
+_OURS = ("finding of ours: holds", "finding of ours: does not hold")
 _FILMS = (
     "films of experiments show collisions of about 0.01 s",
     "speed and resolution of the film",
@@ -300,11 +302,14 @@ _CLAIMS = (
     ),
     Claim(
         "water-torque-shear",
-        "20",
+        "",
         f"{_SALTATION}; rotation free with the torque of the water, or locked",
-        "ours: with the torque the bed shear resistance is the half that Fig. 20 reports",
+        "nothing; ours: with the torque of the water the bed shear resistance of free grains is about half "
+        "of that of locked ones",
         "law of the torque, Reynolds number; definition of shear resistance",
-        "the paper reports the half without the torque",
+        "no explanation of Fig. 20: the run of the paper had no torque of the water, and its half must have "
+        "another reason",
+        _OURS,
     ),
     Claim(
         "debris-river",
