@@ -41,7 +41,9 @@ _OURS = ("finding of ours: holds", "finding of ours: does not hold")
 _FILMS = (
     "films of experiments show collisions of about 0.01 s",
     "speed and resolution of the film",
-    "grains that a film shows in contact may only be nearer to each other than it resolves",
+    "the film that is judged is one of the model by itself, none of an experiment; grains that it shows in "
+    "contact may only be nearer to each other than it resolves",
+    ("seen on a film of the model", "not seen on a film of the model"),
 )
 
 _CLAIMS = (
