@@ -171,8 +171,8 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
     return Finding(
         claim,
         (*_judged(sets, runs), *_shown(sets, runs)),
-        "The model filmed itself; no film of an experiment was measured. A film does not show a collision but "
-        "that two grains are near each other. Mean time that pairs are "
+        "The model filmed itself; no film of an experiment was measured. A film does not show a collision "
+        "but that two grains are near each other. Mean time that pairs are "
         f"within {eps:g} d: {stays}.",
         {
             "flow": FLOWS[claim].setup,
