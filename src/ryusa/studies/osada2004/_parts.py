@@ -28,6 +28,7 @@ NAMES = (
     "fig15",
     "fig16",
     "fig17",
+    "fig17_egashira",
     "fig17_free",
     "fig18",
     "long_contacts",
