@@ -254,6 +254,7 @@ UNITS = {
     "rolling.inertia_spin": "kg m2, kg m2 -> kg m2",
     "rolling.inertia_rolling": "kg, m, kg m2, kg, m, kg m2 -> kg m2",
     "rolling.epsd_stiffness": "N/m, m, - -> N m",
+    "rolling.epsd_step": "N m, N m s, kg m2, - -> s",
     "rolling.epsd_damping": "N m, kg m2, - -> N m s",
     "rolling.epsd_spring": "N m, rad/s, N m, s -> N m",
     "rolling.slider_scale": "N m, N m -> -",
