@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ryusa.errors import OverlapTooLarge, RunError
 from ryusa.laws import transport
 from ryusa.laws.debris import equilibrium_concentration
 from ryusa.studies import osada2004
@@ -143,6 +144,20 @@ def test_of_as_many_grains_as_the_closed_form_has_in_a_deposit_nothing_flows():
 @pytest.mark.parametrize(("change", "outcome"), [(0.3, Outcome.HOLDS), (0.8, Outcome.FAILS)])
 def test_paths_are_nearly_parallel_within_half_a_diameter(change, outcome):
     assert judged(change=change)["fig17-parallel"].base_outcome is outcome
+
+
+def test_grains_that_pass_through_each_other_fail_a_setting():
+    about = {"grain": 4, "step": 100, "t": 0.1, "hint": ""}
+    error = OverlapTooLarge("overlap is 0.5 of the smaller diameter", **about)
+    assert part.failed(error) is not None
+    assert part.failed(RunError("another", **about)) is None
+    found = {one: beside() for one in part.tasks(STANDARD)}
+    found |= {one: part.failed(error) for one in found if "0.0010641 N/cm" in str(one.overrides)}
+    for one in part.judge(found, STANDARD):
+        long = [trial for trial in one.trials if trial.choices[part.TIME] == "1e-2 s"]
+        assert long and all(trial.holds is False and "pass through" in trial.note for trial in long)
+        assert one.base_outcome is Outcome.HOLDS
+    assert part.rows(found, STANDARD) and part.draw(found, STANDARD)
 
 
 def test_every_collision_time_keeps_the_restitution_and_names_its_steps():

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from ryusa.errors import OverlapTooLarge, RunError
 from ryusa.figures.comparison import Axis, Curve, compared
 from ryusa.laws.debris import equilibrium_concentration
 from ryusa.measure import collisions, profiles
@@ -28,15 +29,16 @@ TIME = "collision time"
 OF_CASE = "8.4e-5 s"  # by Eq. (8), of the 200 N/cm of the paper
 ONE_LONG = 8.4226e-5  # the same with more digits [s]
 TIMES = (OF_CASE, "1e-5 s", "1e-3 s", "1e-2 s")
-STEPS = {"1e-3 s": "30", "1e-2 s": "300"}  # in the shortest contact: as many as resolve drag and water
+STEPS = {"1e-3 s": "30", "1e-2 s": "1200"}  # in the shortest contact: as many as resolve drag and water
 ANGLE, STRETCH = "friction angle of the closed form", "way along the bed"
-SAND, GRAINS = "38 deg, of gravel", "that of the grains"
+SAND, GRAINS = "38 deg", "that of the grains"
 THIN = 0.01  # concentration of a layer whose speed counts
 SPEED = "mean grain speed over that of the closed form"
 OF_PROFILE = ("speed", "concentration", "flux")
 PROFILE = "difference of the profile of {} from the closed form"
 CHANGE = "change of height along a path, in diameters"
 STANDS = "by the closed form friction between grains at rest holds the flow"
+THROUGH = "grains pass through each other: {} of {} runs have an overlap of half a diameter"
 
 
 def _springs(time: str) -> dict[str, str]:
@@ -130,6 +132,18 @@ class BesideClosedForms:
         return math.sqrt(float(weight @ away**2) / float(weight.sum()))
 
 
+@dataclass(frozen=True)
+class PassedThrough:
+    """A run that stopped because the centre of a grain came to the surface of another."""
+
+    said: str
+
+
+def failed(error: RunError) -> PassedThrough | None:
+    """Grains that pass through each other are a result: contacts this long do not keep grains apart."""
+    return PassedThrough(str(error)) if isinstance(error, OverlapTooLarge) else None
+
+
 def settings(plan: Plan) -> list[dict[str, str]]:
     """Sets of free choices, the shipped one first."""
     return DESIGN.settings(n_settings(plan))
@@ -194,22 +208,28 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 
 def _runs(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[BesideClosedForms]:
-    return [found[run(chosen, seed)] for seed in plan.seeds]
+    """Runs of a setting that went to their end."""
+    every = [found[run(chosen, seed)] for seed in plan.seeds]
+    return [one for one in every if isinstance(one, BesideClosedForms)]
 
 
-def _trial(claim: str, part: str, chosen: Mapping[str, str], values: Sequence[float]) -> Trial:
-    """Mean over seeds; without a number the closed form stands where ours flows, and the part fails."""
+def _trial(plan: Plan, claim: str, part: str, chosen: Mapping[str, str], values: Sequence[float]) -> Trial:
+    """Mean over seeds; a part fails where the closed form stands, or where grains pass through each other."""
     limits = band(claim, part)
-    if np.isfinite(values).all():
-        return seeds_trial(part, chosen, values, limits)
-    return Trial(part, chosen, exact(math.nan, limits.unit), limits, decided=False, note=STANDS)
+    lost = len(plan.seeds) - len(values)
+    note = THROUGH.format(lost, len(plan.seeds)) if lost else ""
+    if lost or not np.isfinite(values).all():
+        return Trial(part, chosen, exact(math.nan, limits.unit), limits, decided=False, note=note or STANDS)
+    return seeds_trial(part, chosen, values, limits)
 
 
 def _of_profiles(found: Found, plan: Plan) -> Finding:
     def tried(chosen: Mapping[str, str]) -> list[Trial]:
         runs = _runs(found, plan, chosen)
         return [
-            _trial("fig17-egashira", part, {**chosen, ANGLE: angle}, [value(one, angle) for one in runs])
+            _trial(
+                plan, "fig17-egashira", part, {**chosen, ANGLE: angle}, [value(one, angle) for one in runs]
+            )
             for angle in (SAND, GRAINS)
             for part, value in _PARTS.items()
         ]
@@ -233,7 +253,7 @@ def _of_profiles(found: Found, plan: Plan) -> Finding:
             "the same factor as the speed",
         ),
         beside=tuple(
-            Trial(one.part, one.choices, one.found, None)
+            Trial(one.part, one.choices, one.found, None, note=one.note)
             for chosen in sweep(plan)[1:]
             for one in tried(chosen)
         ),
@@ -249,6 +269,8 @@ _PARTS: Mapping[str, Callable[[BesideClosedForms, str], float]] = {
 def _said(found: Found, plan: Plan, chosen: Mapping[str, str]) -> str:
     """Numbers of one collision time."""
     runs = _runs(found, plan, chosen)
+    if lost := len(plan.seeds) - len(runs):
+        return f"collision time {chosen[TIME]}: {THROUGH.format(lost, len(plan.seeds))}"
 
     def mean(value: Callable[[BesideClosedForms], float], unit: str = "-") -> str:
         return str(over_seeds([value(one) for one in runs], unit))
@@ -282,15 +304,16 @@ def _of_paths(found: Found, plan: Plan) -> Finding:
     def tried(chosen: Mapping[str, str]) -> list[Trial]:
         runs = _runs(found, plan, chosen)
         return [
-            seeds_trial(
-                CHANGE, {**chosen, STRETCH: f"{far:g} d"}, [one.paths.change[far] for one in runs],
-                band("fig17-parallel", CHANGE),
+            _trial(
+                plan, "fig17-parallel", CHANGE, {**chosen, STRETCH: f"{far:g} d"},
+                [one.paths.change[far] for one in runs],
             )
             for far in STRETCHES
         ]  # fmt: skip
 
     def steep(chosen: Mapping[str, str]) -> str:
-        return str(over_seeds([one.paths.steep for one in _runs(found, plan, chosen)], "-"))
+        steeps = [one.paths.steep for one in _runs(found, plan, chosen)]
+        return str(over_seeds(steeps, "-")) if steeps else "none, grains pass through each other"
 
     return Finding(
         "fig17-parallel",
@@ -305,7 +328,7 @@ def _of_paths(found: Found, plan: Plan) -> Finding:
             for one in sweep(plan)
         ),
         beside=tuple(
-            Trial(one.part, one.choices, one.found, None)
+            Trial(one.part, one.choices, one.found, None, note=one.note)
             for chosen in sweep(plan)[1:]
             for one in tried(chosen)
         ),
@@ -325,12 +348,13 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
         for chosen in {tuple(one.items()): one for one in [*settings(plan), *sweep(plan)]}.values()
         for seed in plan.seeds
         for one in [found[run(chosen, seed)]]
+        if isinstance(one, BesideClosedForms)
     ]  # fmt: skip
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Profiles of speed and concentration, by collision time, with the closed forms."""
-    shown = {one[TIME]: _runs(found, plan, one)[0] for one in sweep(plan)}
+    shown = {one[TIME]: runs[0] for one in sweep(plan) if (runs := _runs(found, plan, one))}
     base = shown[OF_CASE]
     height = Axis("height above the bed over d")
     fine = np.linspace(0.0, base.flow.depth, 100)
