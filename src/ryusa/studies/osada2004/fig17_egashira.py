@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.errors import OverlapTooLarge, RunError
+from ryusa.errors import OverlapTooLarge, RyusaError, WaterError
 from ryusa.figures.comparison import Axis, Curve, compared
 from ryusa.laws.debris import equilibrium_concentration
 from ryusa.measure import collisions, profiles
@@ -38,7 +38,7 @@ OF_PROFILE = ("speed", "concentration", "flux")
 PROFILE = "difference of the profile of {} from the closed form"
 CHANGE = "change of height along a path, in diameters"
 STANDS = "by the closed form friction between grains at rest holds the flow"
-THROUGH = "grains pass through each other: {} of {} runs have an overlap of half a diameter"
+THROUGH = "grains pass through each other: {} of {} runs stopped"
 
 
 def _springs(time: str) -> dict[str, str]:
@@ -134,14 +134,18 @@ class BesideClosedForms:
 
 @dataclass(frozen=True)
 class PassedThrough:
-    """A run that stopped because the centre of a grain came to the surface of another."""
+    """A run that stopped because grains came into each other by half a diameter, or left water no room."""
 
     said: str
 
 
-def failed(error: RunError) -> PassedThrough | None:
-    """Grains that pass through each other are a result: contacts this long do not keep grains apart."""
-    return PassedThrough(str(error)) if isinstance(error, OverlapTooLarge) else None
+def failed(error: RyusaError) -> PassedThrough | None:
+    """Grains that pass through each other are a result: contacts this long do not keep grains apart.
+
+    Where many are pressed together at once the water stops the run first: the drag that it would have in what
+    is left between them has no end.
+    """
+    return PassedThrough(str(error)) if isinstance(error, OverlapTooLarge | WaterError) else None
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
