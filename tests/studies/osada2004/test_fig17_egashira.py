@@ -150,7 +150,7 @@ def test_grains_that_pass_through_each_other_fail_a_setting():
     about = {"grain": 4, "step": 100, "t": 0.1, "hint": ""}
     error = OverlapTooLarge("overlap is 0.5 of the smaller diameter", **about)
     assert part.failed(error) is not None
-    assert part.failed(WaterError("Drag brings grains to the speed of the water within 2e-6 s")) is not None
+    assert part.failed(WaterError("drag", step=600, t=0.18, hint="")) is not None
     assert part.failed(RunError("another", **about)) is None
     found = {one: beside() for one in part.tasks(STANDARD)}
     found |= {one: part.failed(error) for one in found if "0.0010641 N/cm" in str(one.overrides)}
