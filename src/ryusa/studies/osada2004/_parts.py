@@ -40,6 +40,7 @@ NAMES = (
     "fig22_free",
     "eq13",
     "rolling_friction",
+    "rolling_blind",
     "water_torque",
     "debris_river",
 )

@@ -306,6 +306,14 @@ _CLAIMS = (
         "form of the law, coefficient, friction angle",
     ),
     Claim(
+        "rolling-blind",
+        "23",
+        "a coefficient of rolling friction, fitted on the heap alone in a wide box, the rest predicted blind",
+        "to be done: the best value of f' is to be derived by comparison with basic experiments",
+        "form of the law, coefficient, friction angle",
+        "the search of rolling-friction ended in the corner of its box, its step too long for the springs",
+    ),
+    Claim(
         "water-torque",
         "21",
         f"{_SALTATION}; rotation free, with the torque of the water",

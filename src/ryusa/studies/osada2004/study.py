@@ -26,7 +26,7 @@ QUESTIONS = (
         "Rolling friction",
         "question-rolling-friction",
         "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
-        ("eq13", "rolling-friction"),
+        ("eq13", "rolling-friction", "rolling-blind"),
     ),
     (
         "Water torque",
