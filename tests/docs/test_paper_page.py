@@ -14,6 +14,8 @@ from ryusa.study.page import render
 DOCS = Path(__file__).parents[2] / "docs"
 SHARE = re.compile(r"(none|\d+) of (\d+) settings( \((\d+) undecided\))?")
 LEDGERS = ("paper.json.xz", "paper-full.json.xz")
+# Registered after the runs of the kept ledgers: the page has no row of them until the next ledgers are kept.
+LATER = {"fig17-egashira", "fig17-parallel", "rolling-blind"}
 
 
 def page():
@@ -44,7 +46,8 @@ def settings_of(finding):
 
 
 def test_every_claim_stands_on_the_page_with_its_verdict():
-    assert set(page()) == set(CLAIMS) == set(kept())
+    assert set(page()) == set(kept()) == set(CLAIMS) - LATER, "claims that have a row are no longer LATER"
+    assert set(CLAIMS) > LATER
     for claim, finding in kept().items():
         assert page()[claim] == str(PAPER.said(finding)), claim
 

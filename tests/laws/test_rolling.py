@@ -119,3 +119,25 @@ def test_a_rolling_sphere_stops_after_the_distance_of_the_closed_form():
         x += spin * r * dt
     assert x == pytest.approx(0.25 / (2.0 * 5.0 / 7.0 * mu_r * g), rel=1e-3)
     assert spin == 0.0
+
+
+def fastest(k_r, eta_r, inertia, partners, dt, steps=4000):
+    """Amplitude that is left of the fastest motion of a packing, by the scheme itself."""
+    spin, spring = 1.0, 0.0
+    for _ in range(steps):
+        spring = rolling.epsd_spring(spring, 2.0 * spin, k_r, dt)
+        torque = partners * rolling.epsd_torque(spring, 2.0 * spin, eta_r, 1.0)
+        spin += torque / inertia * dt
+        if abs(spin) > 1e6:
+            break
+    return abs(spin)
+
+
+@pytest.mark.parametrize("zeta", [0.05, 0.3, 1.0])
+@pytest.mark.parametrize("partners", [1, 4, 6])
+def test_beyond_the_step_of_the_rolling_springs_a_packing_trembles_for_ever(zeta, partners):
+    k_r, inertia = 3.0, 0.25
+    eta_r = rolling.epsd_damping(k_r, 3.5 * inertia, zeta)
+    limit = rolling.epsd_step(k_r, eta_r, inertia, partners)
+    assert fastest(k_r, eta_r, inertia, partners, 0.99 * limit) < 1e-3
+    assert fastest(k_r, eta_r, inertia, partners, 1.01 * limit) > 1e3

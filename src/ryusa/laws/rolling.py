@@ -218,6 +218,38 @@ def epsd_spring(spring: float, spin: float, k_r: float, dt: float) -> float:
 
 
 @law
+def epsd_step(k_r: float, eta_r: float, inertia: float, partners: float) -> float:
+    """Time step up to which the rolling springs of grains in a packing are stable [s].
+
+    Parameters
+    ----------
+    k_r, eta_r : rolling spring [N m/rad] and dashpot [N m s] of a contact, > 0 and >= 0.
+    inertia : moment of inertia of a grain [kg m2].
+    partners : grains that it touches, each of which turns against it.
+
+    Notes
+    -----
+    Derived. In the fastest motion all neighbours turn against each other, so that each contact turns twice as
+    far as a grain: I domega/dt = -2 n (k_r angle + eta_r omega), with omega_0**2 = 2 n k_r/I and zeta =
+    eta_r omega_0/(2 k_r). The scheme advances the spring with the spin half a step old and the dashpot too;
+    its map has determinant 1 - 2 zeta h and trace 2 - 2 zeta h - h**2 with h = omega_0 dt, and no eigenvalue
+    beyond 1 as long as h <= 2 (sqrt(1 + zeta**2) - zeta). With k_r and eta_r of type C (Ai et al. 2011) and
+    equal spheres omega_0 grows with the coefficient mu_r, so that a step that is a tenth of a contact becomes
+    too long for large ones.
+
+    Examples
+    --------
+    >>> epsd_step(2.0, 0.0, 1.0, 1.0)  # omega_0 = 2
+    1.0
+    >>> epsd_step(2.0, 1.5, 1.0, 1.0)  # zeta = 0.75: half of it
+    0.5
+    """
+    omega = math.sqrt(2.0 * partners * k_r / inertia)
+    zeta = 0.5 * eta_r * omega / k_r
+    return 2.0 * (math.sqrt(1.0 + zeta * zeta) - zeta) / omega
+
+
+@law
 def slider_scale(size: float, cap: float) -> float:
     """Factor <= 1 [-] that limits a spring of magnitude `size` to `cap` (both in the same unit).
 

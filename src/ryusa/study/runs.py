@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import RunError, RyusaError
+from ryusa.errors import RunError, RyusaError, WaterError
 from ryusa.running.lock import holder
 from ryusa.study.cost import CostEstimate, code_of, estimate_cost, is_other, present, refuse_if_too_big
 from ryusa.study.executors import Processes, RunExecutor
@@ -283,9 +283,8 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
         opened = answer is not None
         if not opened:
             answer = one.make(place, anew=again)
-    except (
-        RunError
-    ) as error:  # for some parts a failed run is a result, for example of a scheme that creates energy
+    # for some parts a failed run is a result, for example of a scheme that creates energy
+    except (RunError, WaterError) as error:
         for name in names:
             faults[name] = fault_of(error)
             with noted(faults, name):

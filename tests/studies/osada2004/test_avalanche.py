@@ -255,6 +255,20 @@ def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
     assert math.isnan(fig16._ratio([nothing, nothing, soft(2.0)], "advance", ALL))
 
 
+def test_in_sums_over_the_runs_a_grain_that_hardly_advances_counts_as_little_as_it_advances():
+    def pair(advance, per_metre):
+        return RunPair(
+            flow(4.0, advance=advance, per_metre=per_metre), flow(4.0, advance=1.0, per_metre=10.0)
+        )
+
+    runs = [pair(0.001, 5000.0), pair(1.0, 10.0), pair(1.0, 10.0)]  # 5, 10 and 10 turns a grain
+    assert fig16._ratio(runs, "per_metre", ALL) < 0.01
+    assert fig16._ratio_of_sums(runs, "per_metre", ALL) == pytest.approx(10.0 / (25.0 / 2.001))
+    assert fig16._ratio_of_sums(runs, "advance", ALL) == pytest.approx(3.0 / 2.001)
+    nothing = RunPair(flow(4.0, advance=math.nan), flow(4.0))
+    assert math.isnan(fig16._ratio_of_sums([nothing, nothing, *runs[1:2]], "per_metre", ALL))
+
+
 def test_fig16_fails_where_one_of_the_two_only_creeps():
     assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Outcome.FAILS
 

@@ -28,6 +28,7 @@ NAMES = (
     "fig15",
     "fig16",
     "fig17",
+    "fig17_egashira",
     "fig17_free",
     "fig18",
     "long_contacts",
@@ -39,6 +40,7 @@ NAMES = (
     "fig22_free",
     "eq13",
     "rolling_friction",
+    "rolling_blind",
     "water_torque",
     "debris_river",
 )

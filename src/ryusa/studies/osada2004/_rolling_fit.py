@@ -158,3 +158,80 @@ def limits(values: Sequence[float]) -> tuple[float, float]:
     ordered = np.sort(np.nan_to_num(np.asarray(values, dtype=np.float64), nan=math.inf))
     ends = (1.0 - CONFIDENCE) / 2.0 * (len(ordered) - 1)
     return float(ordered[math.floor(ends)]), float(ordered[math.ceil(len(ordered) - 1 - ends)])
+
+
+@dataclass(frozen=True)
+class HeapFit:
+    """Slope of heaps over the rolling coefficient at one friction angle, linear in ln mu_r in between.
+
+    Attributes
+    ----------
+    slopes : by coefficient, of every heap that has one [deg]; heaps that stand as walls have none.
+    """
+
+    slopes: Mapping[float, Sequence[float]]
+
+    @cached_property
+    def means(self) -> list[tuple[float, float]]:
+        """Coefficient and mean slope, of coefficients with a heap that has a slope."""
+        return [(one, float(np.mean(values))) for one, values in sorted(self.slopes.items()) if len(values)]
+
+    def crossing(self, wanted: float) -> float:
+        """Smallest coefficient at which the mean slope has risen to a value; nan if at none tried."""
+        for (mu_r, here), (after, there) in pairwise(self.means):
+            if here < wanted <= there:
+                return mu_r * (after / mu_r) ** ((wanted - here) / (there - here))
+        return math.nan
+
+    def chosen(self, wanted: float) -> float:
+        """The crossing; if there is none, the smallest coefficient that comes as near as any to the value.
+
+        As near as any is within one standard error of the nearest mean, with the spread of all heaps.
+        """
+        found = self.crossing(wanted)
+        if math.isfinite(found):
+            return found
+        away = [(abs(slope - wanted), mu_r) for mu_r, slope in self.means]
+        nearest, best = min(away)
+        error = self.spread() / math.sqrt(max(len(self.slopes[best]), 1))
+        return min(mu_r for distance, mu_r in away if distance <= nearest + error)
+
+    def spread(self) -> float:
+        """Standard deviation between seeds, of all coefficients together [deg]; 0 with one seed."""
+        left = [value - np.mean(values) for values in self.slopes.values() for value in values]
+        free = len(left) - len(self.means)
+        return math.sqrt(float(np.sum(np.square(left))) / free) if free > 0 else 0.0
+
+    def edge(self, wanted: float) -> str:
+        """Edge of the box at which the search ends, in words; empty where one inside has the value."""
+        if math.isfinite(self.crossing(wanted)):
+            return ""
+        (least, first), (most, last) = self.means[0], self.means[-1]
+        top, mu_r = max((slope, mu_r) for mu_r, slope in self.means)
+        if top < wanted:
+            levels = (
+                f"the mean slope is nowhere above {top:.3g} deg (mu_r {mu_r:g}), {last:.3g} deg at the edge"
+            )
+            return (
+                f"no coefficient tried gives {wanted:g} deg: upper edge of the box, mu_r {most:g}; {levels}"
+            )
+        return f"lower edge of the box, mu_r {least:g}, where the slope is {first:.3g} deg already"
+
+    def resampled(self, random: np.random.Generator) -> "HeapFit":
+        """Draw heaps anew at every coefficient."""
+        return HeapFit(
+            {
+                one: [float(x) for x in random.choice(values, len(values))] if len(values) else []
+                for one, values in self.slopes.items()
+            }
+        )
+
+    def places(self, wanted: float, n: int = RESAMPLES) -> list[float]:
+        """Place of the crossing in the box, from 0 at its lower to 1 at its upper edge, of resamples."""
+        random = np.random.default_rng(1)
+        tried = sorted(self.slopes)
+        width = math.log(tried[-1] / tried[0])
+        return [
+            math.log(one.crossing(wanted) / tried[0]) / width
+            for one in (self.resampled(random) for _ in range(n))
+        ]

@@ -18,6 +18,7 @@ from ryusa.studies.osada2004._avalanche import (
     SOFT,
     STIFF,
     RunPair,
+    Ways,
     together,
 )
 from ryusa.studies.osada2004._bands import band
@@ -28,6 +29,8 @@ FIGURE = "fig16"
 TITLE = "Paths of grains in a dry avalanche"
 CLAIMS = ("fig16",)
 GRAINS = "grains"
+RUNS = "number of all runs"
+BY_RUN, SUMMED = "mean of the runs", "sums over the runs"
 # part of the claim -> what it is of each run
 PARTS = {
     "reversals of the vertical motion per metre of advance, 0.0001 s over 0.01 s": "per_metre",
@@ -42,14 +45,16 @@ tasks, measure = _avalanche.tasks, _avalanche.measure
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Jagged, short and not in layers."""
     tried = [
-        replace(one, choices={**one.choices, GRAINS: grains})
+        replace(one, choices={**one.choices, GRAINS: grains, RUNS: runs})
+        for runs, ratio_of in ((BY_RUN, _ratio), (SUMMED, _ratio_of_sums))
         for grains in (BETWEEN, ALL)
         for part, name in PARTS.items()
-        for ratio in [together(partial(_ratio, name=name, grains=grains))]
+        for ratio in [together(partial(ratio_of, name=name, grains=grains))]
         for one in map(_without, _avalanche.trials(found, plan, part, ratio, band("fig16", part)))
     ]
     tried += [
-        replace(one, choices={**one.choices, GRAINS: grains})
+        replace(one, choices={**one.choices, GRAINS: grains, RUNS: runs})
+        for runs in (BY_RUN, SUMMED)
         for grains in (BETWEEN, ALL)
         for one in _avalanche.flows(found, plan)
     ]
@@ -84,7 +89,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "collision time: that sets how often its path reverses on a given way. "
             f"{SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
             {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
-            readings=(_avalanche.WINDOW, GRAINS),
+            readings=(_avalanche.WINDOW, GRAINS, RUNS),
             also=(
                 "grains that touch the bed and moving grains alternately, wherever they began: "
                 f"{words['n', BETWEEN]}",
@@ -106,6 +111,26 @@ def _ratio(found: Sequence[RunPair], name: str, grains: str) -> float:
     kept = [pair for pair in both if all(map(math.isfinite, pair))]
     soft, stiff = np.mean(kept, axis=0) if 2 * len(kept) > len(both) else (math.nan, math.nan)
     return float(stiff / soft) if soft != 0.0 else math.nan
+
+
+def _ratio_of_sums(found: Sequence[RunPair], name: str, grains: str) -> float:
+    """Ratio of what all grains of all stiff runs do to what those of all soft ones do.
+
+    Turns and vertical ways of all runs are summed, and divided by the sum of all advances: in the mean of the
+    runs one whose grains hardly advance has so many turns a metre that it outweighs all others.
+    """
+    both = [(pair.soft.ways[grains], pair.stiff.ways[grains]) for pair in found]
+    kept = [pair for pair in both if all(math.isfinite(one.advance) for one in pair)]
+    if 2 * len(kept) <= len(both):
+        return math.nan
+    soft, stiff = (_of_all([pair[k] for pair in kept], name) for k in (0, 1))
+    return stiff / soft if soft != 0.0 else math.nan
+
+
+def _of_all(ways: Sequence[Ways], name: str) -> float:
+    """Turns or vertical way per advance of all grains of these runs, or their mean advance."""
+    weights = [one.n if name == "advance" else one.n * one.advance for one in ways]
+    return float(np.average([getattr(one, name) for one in ways], weights=weights))
 
 
 def _mean(values: Sequence[float]) -> float:

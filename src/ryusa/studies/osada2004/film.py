@@ -33,7 +33,7 @@ from ryusa.studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 
 FIGURE = "film"
-TITLE = "Contact as a film shows it"
+TITLE = "Contact as a film of the model shows it"
 CLAIMS = tuple(FLOWS)
 E = 0.7  # restitution of all three flows
 MEDIAN = "median of it"
@@ -171,7 +171,8 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
     return Finding(
         claim,
         (*_judged(sets, runs), *_shown(sets, runs)),
-        "A film does not show a collision but that two grains are near each other. Mean time that pairs are "
+        "The model filmed itself; no film of an experiment was measured. A film does not show a collision "
+        "but that two grains are near each other. Mean time that pairs are "
         f"within {eps:g} d: {stays}.",
         {
             "flow": FLOWS[claim].setup,
@@ -266,7 +267,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     edges = [Curve(f"{one:g} s", np.full(2, one), np.array([0.0, 1.0])) for one in (SEEN.low, SEEN.high)]
     return {
         "film": compared(
-            Axis("time in contact on the film", "s", log=True),
+            Axis("time in contact on a film of the model", "s", log=True),
             Axis("share that lasts longer"),
             curves,
             [],

@@ -149,7 +149,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "water-torque-shear",
             tuple(shears),
-            "A grain that the water has slowed slips again at its next hit, and is braked by friction.",
+            "A grain that the water has slowed slips again at its next hit, and is braked by friction. The "
+            "paper's own run had no torque of the water, so that this is no reason for the half of Fig. 20.",
             settings={**done, "against": "rotation locked"},
             readings=(SHEAR,),
             also=tuple(
