@@ -57,6 +57,7 @@ def stl(side: float) -> str:
     return STL.format(facets=rows)
 
 
+GROUPS = "x [mm],z [mm],d [mm],group\n0,5,2,\n5,5,2,ball\n"
 NEAR = "x [mm],z [mm],d [mm]\n0,0,2\n1.9,0,2\n"
 GRAINS = "t [s],x [cm],z [cm],d [mm],fixed\n0,0.5,0.5,2,0\n0,1.0,0.5,2,1\n1,0.6,0.5,2,0\n1,1.0,0.6,2,1\n"
 DUMP = """ITEM: TIMESTEP
@@ -81,6 +82,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (at / "body.stl").write_text(stl(1.0), encoding="utf-8")
     (at / "grains.csv").write_text(GRAINS, encoding="utf-8")
     (at / "near.csv").write_text(NEAR, encoding="utf-8")
+    (at / "groups.csv").write_text(GROUPS, encoding="utf-8")
     (at / "grains.dump").write_text(DUMP, encoding="utf-8")
     return at
 
