@@ -57,6 +57,7 @@ class Bulk:
     spin: float = 0.0
     ball: float = 0.0  # diameter [m]
     speed: float = 0.0  # of the ball, downwards [m/s]
+    above: float | None = None  # height of its centre over the floor at the start [m]; just over the bed
 
     @property
     def n(self) -> int:
@@ -78,7 +79,7 @@ class Bulk:
             ends = [_shell(around, 0.0, z, r, z, 3) for z in (-h / 2.0, h / 2.0)]
             turned = np.concatenate([shell, *ends])[..., [0, 2, 1]]
             return turned[np.linalg.norm(np.cross(*_sides(turned)), axis=1) > 1e-12]
-        o, x, y, z = np.array([-r, -h, 0.0]), *np.diag([2.0 * r, 2.0 * h, 8.0 * self.ball])
+        o, x, y, z = np.array([-r, -h, 0.0]), *np.diag([2.0 * r, 2.0 * h, 10.0 * self.ball])
         sides = ((o, x, y), (o, x, z), (o, y, z), (o + x, y, z), (o + y, x, z))
         return np.concatenate([square(4, *one) for one in sides])
 
@@ -108,7 +109,8 @@ def forms() -> dict[str, dict[str, Bulk]]:
     diameters wide; its drum is smaller by 0.368 at the same Froude number and makes half a turn; its ball has
     4 diameters of a grain, and is slower. Silo and drum are softer by a hundred. Usual steps: 0.8 of YADE's
     PWaveTimeStep, 0.2 of the Rayleigh time in LIGGGHTS, 25 steps in the shortest contact in ryusa at the
-    `expected_speed` of the case files.
+    `expected_speed` of the case files. `full` are the cases of the paper; `soft` is its silo with softer
+    grains, and its deepest bed, for what can be had of it in hours.
     """
     kilo = 1000
     return {
@@ -126,7 +128,13 @@ def forms() -> dict[str, dict[str, Bulk]]:
             "drum": Bulk("drum", (("M2", 4e-3, 8 * kilo), ("M1", 2e-3, 30 * kilo)), 1.0, 0.1, 0.06, 5.0, 0.1,
                          8e-7, _own(1.25e-6, 1.7e-6, 1.32e-6), spin=2.0),
             "impact": Bulk("impact", (("M1", 2e-3, 25 * kilo),), 1.0, 0.049, 0.03, 0.1, 1e-3, 5e-7,
-                           _own(1.25e-6, 1.7e-6, 6.9e-7), ball=0.02, speed=5.0),
+                           _own(1.25e-6, 1.7e-6, 6.9e-7), ball=0.02, speed=5.0, above=0.1502431),
+        },
+        "soft": {
+            "silo": Bulk("silo", (("M1", 4e-3, 100 * kilo),), 100.0, 0.1, 0.3, 5.0, 0.05, 1.5e-5,
+                         _own(2.5e-5, 3.4e-5, 1.45e-5), opening=0.03),
+            "impact": Bulk("impact", (("M1", 2e-3, 100 * kilo),), 1.0, 0.049, 0.03, 0.06, 1e-3, 5e-7,
+                           _own(1.25e-6, 1.7e-6, 6.9e-7), ball=0.02, speed=5.0, above=0.1502431),
         },
     }  # fmt: skip
 
@@ -187,7 +195,7 @@ def settled(bulk: Bulk, seed: int, folder: Path, threads: int = 2) -> Path:
     x, v = engine.state().x.copy(), np.zeros((len(x), 3))
     if bulk.ball:
         top = float(x[:, 2].max()) + 0.5 * float(d.max()) + 0.1 * bulk.ball
-        x = np.vstack([x, [0.0, 0.0, top + 0.5 * bulk.ball]])
+        x = np.vstack([x, [0.0, 0.0, bulk.above or top + 0.5 * bulk.ball]])
         v = np.vstack([v, [0.0, 0.0, -bulk.speed]])
         d, of = np.append(d, bulk.ball), np.append(of, MATERIALS.index("steel"))
     folder.mkdir(parents=True, exist_ok=True)

@@ -33,7 +33,8 @@ def slices(form: str, bulk: Bulk, seed: int) -> None:
         with np.load(frames_of(form, bulk.name, code, seed)) as file:
             k = min(round(WHEN[bulk.name] * (len(file["t"]) - 1)), len(file["t"]) - 1)
             t, x, first = float(file["t"][k]), file["x"][k], file["x"][0]
-        shown = np.flatnonzero(np.abs(x[:, 1]) < 0.5 * near)
+        slab = (np.abs(x[:, 1]) < 0.5 * near) | (d == bulk.ball)
+        shown = np.flatnonzero(slab)
         colour = of if bulk.name == "drum" else np.floor(first[:, 2] / (5.0 * near)) % 2
         if bulk.ball:
             colour[-1] = 2
@@ -43,10 +44,10 @@ def slices(form: str, bulk: Bulk, seed: int) -> None:
             edgecolors="k",
         ))  # fmt: skip
         corners = bulk.mesh()
-        axis.set(title=f"{code}, t = {t:.3g} s", aspect="equal", xlabel="x [m]",
-                 xlim=(corners[..., 0].min(), corners[..., 0].max()),
-                 ylim=(min(corners[..., 2].min(), -0.02 if bulk.name == "silo" else 0.0),
-                       float(np.nanmax(first[:, 2])) + near))  # fmt: skip
+        low = -0.02 if bulk.name == "silo" else corners[..., 2].min()
+        high = corners[..., 2].max() if bulk.spin else float(np.nanmax(first[:, 2])) + near
+        axis.set(title=f"{code}, t = {t:.3g} s", aspect="equal", xlabel="x [m]", ylim=(low, high))
+        axis.set_xlim(corners[..., 0].min(), corners[..., 0].max())
     axes[0][0].set_ylabel("z [m]")
     figure.savefig(WORK / "pictures" / f"{form}-{bulk.name}.png", dpi=110, bbox_inches="tight")
     plt.close(figure)
