@@ -97,7 +97,7 @@ def test_a_scene_without_a_column_of_water_has_none() -> None:
 
 
 def test_cells_begin_below_the_grains_and_hold_depth_and_first_grains() -> None:
-    for depth in ("2 cm", "0.1 cm", "20 cm"):
+    for depth in ("2 cm", "0.2 cm", "20 cm"):
         built = build(case(water__depth=depth))
         scene, found = built.scene, built.scene.column
         assert found is not None

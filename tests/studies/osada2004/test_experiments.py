@@ -41,9 +41,11 @@ def test_every_claim_is_judged_once():
 
 
 def test_a_higher_level_runs_all_that_a_lower_one_runs():
+    smaller = {"rolling_blind"}  # a heap and a bed take minutes each: quick has smaller ones of either
     for name in NAMES:
         quick, standard, full = (set(load(name).tasks(Plan(level, (1,)))) for level in Level)
-        assert quick <= standard <= full, name
+        assert standard <= full, name
+        assert (quick <= standard) == (name not in smaller), name
 
 
 def test_an_unknown_experiment_is_named():
