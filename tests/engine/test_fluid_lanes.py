@@ -11,8 +11,8 @@ from ryusa.compiled.dispatcher import Entry
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu.fluid_forces import make_forces_in_column, make_forces_in_profile
 from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
-from ryusa.engine.shared.room import zeros
 from ryusa.engine.shared.variant import FluidLaws, LawChoice
 from ryusa.laws.families import Above, Buoyancy, Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import N_SAMPLED, PHI, SUBMERGED

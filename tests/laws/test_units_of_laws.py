@@ -122,7 +122,6 @@ UNITS = {
     "debris.discharge_over_bed": "m2/s, -, - -> m2/s",
     "debris.run_out": "m/s, m, -, -, -, -, kg/m3, kg/m3, m/s2 -> m, s",
     "debris.collision_factor": "-, -, -, kg/m3, kg/m3 -> -",
-    "debris.collision_pressure_factor": "-, -, -, kg/m3, kg/m3 -> -",
     "debris.pore_factor": "-, - -> -",
     "debris.static_share": "-, - -> -",
     "debris.velocity_egashira": "m, m, -, -, -, -, -, kg/m3, kg/m3, m/s2, m -> m/s",

@@ -21,7 +21,7 @@ from ryusa.casefile.quantities import (
     Speed,
     Spin,
 )
-from ryusa.casefile.row.meshes import check_meshes_in_row, dam_rows
+from ryusa.casefile.row.meshes import Boxes, check_mesh_in_row, dam_rows
 from ryusa.casefile.row.values import walls_of_stream
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section, given
@@ -221,9 +221,7 @@ def check_meshes(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         elif not _moves(case, wall):
             yield from _out_of_reach(case, wall, key, low, high)
             if wall.shape == "mesh":
-                yield from check_meshes_in_row(
-                    case, [(f"{key}.file", wall.unit or "", low, high)], derived.d_max
-                )
+                yield from check_mesh_in_row(case, f"{key}.file", wall.unit or "", low, high, derived.d_max)
 
 
 def _moves(case: "Case", wall: WallSection) -> bool:
@@ -281,6 +279,7 @@ def box_of(case: "Case", wall: WallSection, key: str) -> tuple[Floats, Floats]:
 def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Shape, size and motion of each wall."""
     rows: list[ExplainRow] = []
+    meshes: Boxes = []
     for k, wall in enumerate(case.walls):
         key = f"walls.{k}"
         low, high = box_of(case, wall, key)
@@ -291,6 +290,7 @@ def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         about, flag = f"{wall.shape}{wide}{doubt}", "warning" if doubt else ""
         rows.append(word("walls", f"{wall.name}: size in x, y, z", f"{size} cm", about, flag))
         if wall.shape == "mesh":
+            meshes.append((wall.name, low, high))
             rows += mesh_rows(case, derived, wall, key)
         moves = [name for name in ("velocity", "angular_velocity", "amplitude") if given(wall, name)]
         if moves:
@@ -298,10 +298,6 @@ def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         rows += belt_rows(case, wall)
         if wall.servo is not None:
             rows.append(word("walls", f"{wall.name}: presses with", servo_text(wall.servo), "servo"))
-    meshes = [
-        (f"walls.{wall.name}", wall.unit or "", *box_of(case, wall, f"walls.{k}"))
-        for k, wall in enumerate(case.walls) if wall.shape == "mesh"
-    ]  # fmt: skip
     return rows + dam_rows(case, meshes, derived.d_max)
 
 

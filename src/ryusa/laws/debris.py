@@ -156,31 +156,6 @@ def collision_factor(c: float, e: float, k_d: float, rho_s: float, rho_w: float)
 
 
 @law
-def collision_pressure_factor(c: float, e: float, k_d: float, rho_s: float, rho_w: float) -> float:
-    """Dimensionless pressure of collisions [-], p_d/(rho d**2 (dU/dz)**2).
-
-    Parameters
-    ----------
-    c : concentration [-].
-    e : restitution [-]; 0.85.
-    k_d : constant [-]; 0.0828.
-    rho_s, rho_w : density of grain and water [kg/m3].
-
-    Notes
-    -----
-    Source: Egashira, Miyamoto & Itoh 1997, k_d e**2 (sigma/rho) c**(1/3), from memory: no text or code that
-    states it was found. It is `collision_factor` with the part of the energy that a collision keeps in place
-    of the part that it loses. For what is shown, not for what judges.
-
-    Examples
-    --------
-    >>> round(collision_pressure_factor(0.125, 0.5, 0.08, 2500.0, 1000.0), 9)  # 0.08 * 0.25 * 2.5 * 0.5
-    0.025
-    """
-    return k_d * e * e * rho_s / rho_w * c ** (1.0 / 3.0)
-
-
-@law
 def pore_factor(c: float, k_f: float) -> float:
     """Dimensionless stress of the water in the pores [-], f_f = tau_f/(rho d**2 (dU/dz)**2).
 

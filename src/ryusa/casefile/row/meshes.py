@@ -14,36 +14,37 @@ from ryusa.model.arrays import Floats
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-Boxes = list[tuple[str, str, Floats, Floats]]  # key, unit of the file, lowest and highest corner [m]
+Boxes = list[tuple[str, Floats, Floats]]  # name of the wall, lowest and highest corner [m]
 
 LONGEST = 2.0  # lengths of the row: a mesh along x
 UNITS = {"mm": 1.0e-3, "cm": 1.0e-2, "in": 0.0254, "ft": 0.3048, "m": 1.0}  # a file may be in [m]
 
 
-def check_meshes_in_row(case: "Case", meshes: Boxes, d: float) -> Iterator[CaseError]:
-    """Find meshes too long for the row, or beside, above or below it; `d` is the largest grain [m]."""
+def check_mesh_in_row(
+    case: "Case", key: str, unit: str, low: Floats, high: Floats, d: float
+) -> Iterator[CaseError]:
+    """Find a mesh too long for the row, or beside, above or below it; `d` is the largest grain [m]."""
     if not stream(case):
         return
     plan = row_plan(case)
     length = plan.n * plan.dx
     x_end, top = plan.x_low + length, float(plan.bottom.max()) + plan.n_cell * plan.cell
-    for key, unit, low, high in meshes:
-        along = float(high[0] - low[0])
-        text = ""
-        if along > LONGEST * length:
-            text = f"is {along:.3g} m long, where the row is {length:.3g} m"
-        elif high[0] < plan.x_low or low[0] > x_end:
-            text = (
-                f"lies between x = {low[0]:.3g} and {high[0]:.3g} m, beside the row, which reaches from "
-                f"{plan.x_low:.3g} to {x_end:.3g} m"
-            )
-        elif low[2] > top or high[2] < float(plan.bottom.min()) - d:
-            text = (
-                f"lies between z = {low[2]:.3g} and {high[2]:.3g} m, where the row has its bottom from "
-                f"{plan.bottom.min():.3g} m on and ends at {top:.3g} m"
-            )
-        if text:
-            yield CaseError(key, None, f"{text}: check unit, scale and place{_guess(unit, along, length, d)}")
+    along = float(high[0] - low[0])
+    text = ""
+    if along > LONGEST * length:
+        text = f"is {along:.3g} m long, where the row is {length:.3g} m"
+    elif high[0] < plan.x_low or low[0] > x_end:
+        text = (
+            f"lies between x = {low[0]:.3g} and {high[0]:.3g} m, beside the row, which reaches from "
+            f"{plan.x_low:.3g} to {x_end:.3g} m"
+        )
+    elif low[2] > top or high[2] < float(plan.bottom.min()) - d:
+        text = (
+            f"lies between z = {low[2]:.3g} and {high[2]:.3g} m, where the row has its bottom from "
+            f"{plan.bottom.min():.3g} m on and ends at {top:.3g} m"
+        )
+    if text:
+        yield CaseError(key, None, f"{text}: check unit, scale and place{_guess(unit, along, length, d)}")
 
 
 def _guess(unit: str, along: float, length: float, d: float) -> str:
@@ -64,17 +65,18 @@ def dam_rows(case: "Case", meshes: Boxes, d: float) -> list[ExplainRow]:
     rows: list[ExplainRow] = []
     for dam in keys.dams:
         crest = crest_of(plan, dam)
-        there = [(key, low, high) for key, _, low, high in meshes if low[0] < dam.end and high[0] > dam.begin]
+        there = [one for one in meshes if one[1][0] < dam.end and one[2][0] > dam.begin]
         if not there:
             continue
-        key, low, high = max(there, key=lambda one: float(one[2][2]))
+        name, low, high = max(there, key=lambda one: float(one[2][2]))
         foot = _bottom(plan, 0.5 * (dam.begin + dam.end))
         tall = max(crest - foot, float(high[2]) - foot)
         off = float(high[2]) - crest
         if abs(off) > max(d, 0.25 * tall) or dam.begin < low[0] - d or dam.end > high[0] + d:
             about = (
-                f"of dam '{dam.name}', x = {dam.begin:.3g} to {dam.end:.3g} m; the mesh of {key} there has "
-                f"{high[2]:.3g} m, x = {low[0]:.3g} to {high[0]:.3g} m: water and grains meet two structures"
+                f"of dam '{dam.name}', x = {dam.begin:.3g} to {dam.end:.3g} m; the mesh of walls.{name} "
+                f"there has {high[2]:.3g} m, x = {low[0]:.3g} to {high[0]:.3g} m: water and grains meet two "
+                "structures"
             )
             rows.append(number("row", "crest", crest, "m", about, "warning"))
     return rows

@@ -8,8 +8,8 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu import prune_schedule as K
 from ryusa.engine.cpu.body_lanes import body_lanes
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.room import zeros
 
 
 class GrainArrays(NamedTuple):

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.room import zeros
 
 Whole = NDArray[np.int64]
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.cpu import fluid_layout as W
-from ryusa.engine.shared.room import zeros
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.rigid_bodies import N_DRAG_FORM
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.cpu.faces import append_faces
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.kernel import inner, kernel
-from ryusa.engine.shared.room import zeros
 from ryusa.laws.geometry import wrap
 from ryusa.model.scene import Floats
 

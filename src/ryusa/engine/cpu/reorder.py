@@ -8,8 +8,8 @@ import numpy as np
 from ryusa.compiled.borrow import borrow
 from ryusa.engine.cpu.arrays import GrainArrays
 from ryusa.engine.cpu.simd.vec4 import copy4
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.room import zeros
 
 
 @kernel(nogil=True)

@@ -24,8 +24,8 @@ from ryusa.engine.cpu.fluid_work import (
 from ryusa.engine.cpu.simd.vec4 import component, vec4_of
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.kernel import FAST
-from ryusa.engine.shared.room import zeros
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
 from ryusa.engine.shared.variant import MotionKind
 from ryusa.laws.grain_step import kinetic_energy, potential_energy, translation_step, unwrapped

@@ -22,9 +22,9 @@ from ryusa.engine.cpu.contact_rows import SHORT, has_short_rows
 from ryusa.engine.cpu.faces import N_MET, face_arrays
 from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
 from ryusa.engine.cpu.reorder import like, move_grains, wrap_grains
+from ryusa.engine.shared.array_memory import unwritten, zeros
 from ryusa.engine.shared.contact_memory import ContactMemory
 from ryusa.engine.shared.layout import Layout, film_reach
-from ryusa.engine.shared.room import unwritten, zeros
 from ryusa.engine.shared.variant import KernelVariant
 from ryusa.model import Scene, State
 from ryusa.model.scene import EventRule, Floats

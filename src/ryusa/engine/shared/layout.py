@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.engine.shared.room import zeros
+from ryusa.engine.shared.array_memory import zeros
 from ryusa.engine.shared.variant import KernelVariant
 from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rebound
 from ryusa.model import FluidAtGrains, Scene, State

@@ -263,21 +263,10 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
     lines: list[dict[str, object]] = []
     for one in tasks(plan):
-        number, space = found[one], one.get("motion.plane") == "false"
-        line: dict[str, object] = {"case": f"{one.case}, 3D" if space else one.case}
-        line |= {"mu_r": one.get("rolling.coefficient", NONE), "seed": one.get("seed")}
-        line |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get("contact.friction_angle", ANGLES[0])}
-        line |= {"bed_slope": one.get("motion.slope"), "steps": one.get("time.steps_per_contact")}
-        if isinstance(number, _heap.Heap):
-            line |= _heap.line(number)
-        elif isinstance(number, Flow):
-            line |= {
-                "q_m2_per_s": number.q, "near_bed_m_per_s": number.near_bed,
-                "over_formula": number.over_formula, "tau_star": number.tau_star,
-            }  # fmt: skip
-        else:
-            line["spin_rad_per_s"] = number
-        lines.append(line)
+        line = rolling_friction.line(one, found[one])
+        if one.get("motion.plane") == "false":
+            line["case"] = f"{one.case}, 3D"
+        lines.append(line | {"steps": one.get("time.steps_per_contact")})
     return lines
 
 

@@ -245,23 +245,22 @@ def _reached(value: float) -> str:
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
-    lines: list[dict[str, object]] = []
-    for one in tasks(plan):
-        number = found[one]
-        line: dict[str, object] = {"case": one.case, "mu_r": one.get("rolling.coefficient", NONE)}
-        line |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get("contact.friction_angle", "30 deg")}
-        line |= {"bed_slope": one.get("motion.slope"), "seed": one.get("seed")}
-        if isinstance(number, _heap.Heap):
-            line |= _heap.line(number)
-        elif isinstance(number, Flow):
-            line |= {
-                "q_m2_per_s": number.q, "near_bed_m_per_s": number.near_bed,
-                "over_formula": number.over_formula, "tau_star": number.tau_star,
-            }  # fmt: skip
-        else:
-            line["spin_rad_per_s"] = number
-        lines.append(line)
-    return lines
+    return [line(one, found[one]) for one in tasks(plan)]
+
+
+def line(one: CaseRun, number: _heap.Heap | float | Flow) -> dict[str, object]:
+    """Setting and numbers of one run."""
+    made: dict[str, object] = {"case": one.case, "mu_r": one.get("rolling.coefficient", NONE)}
+    made |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get("contact.friction_angle", "30 deg")}
+    made |= {"bed_slope": one.get("motion.slope"), "seed": one.get("seed")}
+    if isinstance(number, _heap.Heap):
+        return made | _heap.line(number)
+    if isinstance(number, Flow):
+        return made | {
+            "q_m2_per_s": number.q, "near_bed_m_per_s": number.near_bed,
+            "over_formula": number.over_formula, "tau_star": number.tau_star,
+        }  # fmt: skip
+    return made | {"spin_rad_per_s": number}
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -130,7 +130,7 @@ def test_5(material: str, unloading: str) -> dict[str, Floats]:
 def test_6(material: str, dashpot: str, damping_law: str) -> dict[str, Floats]:
     """Tangential restitution `beta` of the contact point of a grain that comes with spin alone [-]."""
     law = _law(material, LARGE, SLOW, MU_6, E_6, Unloading.PLAIN, DampingLaw.of(damping_law))
-    law = replace(law, zeta_s=_zeta_s(law, dashpot))
+    law = with_dashpot(law, dashpot)
     beta: list[float] = []
     for q, _ in BETA[material]:
         v_t = 3.5 * MU_6 * (1.0 + E_6) * SLOW / q
@@ -162,15 +162,15 @@ def inelastic(e: float, unloading: str, dashpot: str) -> dict[str, Floats]:
         friction=MU_T, restitution=e, restitution_shear=1.0, damping_law=DampingLaw.THORNTON,
         unloading=Unloading.of(unloading), slip=Slip.TOTAL,
     )  # fmt: skip
-    law = replace(law, zeta_s=_zeta_s(law, dashpot))
+    law = with_dashpot(law, dashpot)
     unit = 0.5 * (1.0 + e) * MU_T * BRISK
     found = [_impact(law, "glass", MIDDLE, BRISK, x * unit, 0.0) for x, _ in INELASTIC[e]]
     return {"recoil": np.array([(v_x - MIDDLE * w) / unit for v_x, _, w in found])}
 
 
-def _zeta_s(law: ContactLaw, dashpot: str) -> float:
-    """Ratio of the tangential dashpot: that of EDEM and LIGGGHTS, 2 sqrt(5/6) zeta sqrt(k_s m), or none."""
-    return math.sqrt(5.0 / 6.0 * 3.5) * law.zeta_n if dashpot == "with" else 0.0
+def with_dashpot(law: ContactLaw, dashpot: str) -> ContactLaw:
+    """The law with the tangential dashpot of EDEM and LIGGGHTS, 2 sqrt(5/6) zeta sqrt(k_s m), or without."""
+    return replace(law, zeta_s=math.sqrt(5.0 / 6.0 * 3.5) * law.zeta_n if dashpot == "with" else 0.0)
 
 
 def _mass(material: str, r: float) -> float:

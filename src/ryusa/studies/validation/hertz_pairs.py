@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +11,19 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import DampingLaw, Slip, Unloading
 from ryusa.model.contact_law import contact_time_of, elastic_spheres
 from ryusa.model.scene import Floats
+from ryusa.studies.validation.hertz_oblique import (
+    DASHPOTS,
+    E_6,
+    FINE,
+    LARGE,
+    MATERIALS,
+    MU_6,
+    READ,
+    SLIDES_6,
+    SLOW,
+    STEPS,
+    with_dashpot,
+)
 from ryusa.study import (
     Finding,
     Found,
@@ -27,12 +39,10 @@ from ryusa.study import (
 )
 
 TITLE = "Impact of two elastic spheres that spin"
-STEPS = 400.0  # in a contact
-YOUNG, NU, RHO = 7.0e10, 0.33, 2700.0  # aluminium alloy [Pa], [-], [kg/m3]
-R, SPEED, MU, E = 0.1, 0.2, 0.4, 0.5  # radius [m], speed of each sphere [m/s], friction, restitution
+YOUNG, NU, RHO = MATERIALS["aluminium alloy"]
+R, SPEED, MU, E = LARGE, SLOW, MU_6, E_6  # of test 6: radius [m], speed [m/s], friction, restitution
 SPINS = (0.175, 0.6, 2.0, 6.0, 21.0)  # of both spheres, opposite to each other, test 7 [rad/s]
 LARGER, HEAVIER = 5.0, 1000.0  # radius and density of the second sphere of test 8, over those of the first
-SLIDES = 0.95  # q up to which test 8 slides throughout
 
 # Test 8, case B, both spheres of one modulus, as digitised: q = 3.5 mu (1 + e) v_n/v_t and the tangential
 # restitution beta of the contact point
@@ -41,9 +51,6 @@ BETA = (
     (1.492, 0.111), (1.77, 0.09), (2.091, 0.058), (2.519, 0.006), (2.989, -0.049), (3.631, -0.103),
     (4.508, -0.139), (5.77, -0.162), (7.845, -0.106), (11.909, -0.108), (23.995, -0.106),
 )  # fmt: skip
-READ = "a few times the accuracy of reading"
-FINE = "1/400, and the error of the first step"
-DASHPOTS = ("without", "with")  # a tangential dashpot
 
 
 def test_7() -> dict[str, Floats]:
@@ -81,8 +88,7 @@ def _impact(
         m_e, r_e, youngs_modulus=YOUNG, poisson_ratio=NU, speed=SPEED + speed, friction=MU, restitution=E,
         damping_law=damping, unloading=Unloading.PLAIN, slip=Slip.TOTAL,
     )  # fmt: skip
-    zeta = math.sqrt(5.0 / 6.0 * 3.5) * law.zeta_n if dashpot == "with" else 0.0
-    law = replace(law, zeta_s=zeta)
+    law = with_dashpot(law, dashpot)
     dt = contact_time_of(law, m_e, r_e, SPEED + speed) / STEPS
     apart = float(radius.sum()) + 0.5 * (SPEED + speed) * dt
     of, engine = ("upper", "lower"), registry.create()
@@ -139,7 +145,7 @@ def _gears(found: Found) -> Finding:
 
 def _tangential_restitution(found: Found) -> Finding:
     q, read = np.array(BETA).T
-    slides, sticks = q < SLIDES, q > SLIDES
+    slides, sticks = q < SLIDES_6, q > SLIDES_6
     ours = {one: found[_test_8(one, DampingLaw.THORNTON)]["beta"] for one in DASHPOTS}
     pulls = {one: found[_test_8(one, DampingLaw.TSUJI)]["beta"] for one in DASHPOTS}
     closed = max(float(np.abs(one - (q - 1.0))[slides].max()) for one in ours.values())

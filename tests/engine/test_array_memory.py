@@ -1,12 +1,13 @@
 """Memory for arrays: zeros at a cache line, and no more of it than is written."""
 
+import os
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ryusa.engine.shared.room import unwritten, zeros
+from ryusa.engine.shared.array_memory import unwritten, zeros
 
 MANY = 4 << 20  # doubles
 
@@ -24,7 +25,7 @@ def test_arrays_are_zero_and_begin_at_a_cache_line(made, shape, dtype):
 
 
 def resident() -> int:
-    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux alone tells how much memory a process has")
