@@ -13,6 +13,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import GrainThroughWall
 from ryusa.laws.families import ContactTiming
 from ryusa.model.contact_law import elastic_spheres
+from ryusa.model.tally import Term
 
 R, G, K = 0.5 * D, 9.80665, 1e4
 
@@ -138,6 +139,21 @@ def test_a_tip_gives_no_energy_and_takes_none(n):
         mesh = cone(n, math.radians(half))
         high = R / math.sin(math.atan(math.tan(math.radians(half)) * math.cos(math.pi / n))) + 9e-4
         assert np.abs(energies(mesh, (1e-4, 2e-4, high), (0.0, 0.0, 0.0))).max() < 1e-2
+
+
+@pytest.mark.parametrize("n", full_but([96], [24, 96, 200]))
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_grain_that_meets_many_facets_at_once_is_not_stopped_many_times_over(n, friction):
+    """All with their whole force in the first step, 96 facets gave what the account had as energy of the step."""
+    half = math.radians(40)
+    high = R / math.sin(math.atan(math.tan(half) * math.cos(math.pi / n))) + 5e-5
+    made = scene([[1e-6, 2e-6, high]], D, walls=[triangles("m", cone(n, half))], stiffness=K, restitution=0.5,
+                 friction=friction)  # fmt: skip
+    engine = CpuEngine()
+    engine.load(*made)
+    for _ in range(40):
+        engine.advance(20).raise_if_any()
+        assert abs(engine.tally().terms[Term.STEP]) < 0.3 * M * G * 5e-5
 
 
 @pytest.mark.full

@@ -117,9 +117,10 @@ def share_forces(
 def leave_to_shares(
     b: int, face_lanes: Any, selected: Any, candidates: CandidateArrays, met: Any, batch: Any
 ) -> None:  # fmt: skip
-    """Let no face of a batch be touched ahead beside one that the grain is held by and whose force it shares.
+    """Of faces whose forces a grain shares let only the first be touched ahead, and none beside one that holds it.
 
-    Its part of the force is not known before it has an overlap: it begins at the next kick, by its place.
+    The share of the others is not known before they have an overlap: they begin at the next kick, by their
+    place. Each with its whole force, the facets of a tip that a grain meets at once stopped it many times over.
     """
     first, slot, count = candidates.first[b], candidates.slot, candidates.face_count[b]
     for n in range(face_lanes[B.LANES]):
@@ -133,17 +134,32 @@ def leave_to_shares(
             begin -= 1
         q = begin
         while q < count and candidates.face_grain[first + q] == candidates.i[k]:
-            if candidates.touching[candidates.face[first + q]] and _like(s, q, met):
+            if _like(s, q, met) and (
+                candidates.touching[candidates.face[first + q]] or _is_met_before(q, s, l, met, batch)
+            ):
                 batch[B.KIND + l] = NOTHING
             q += 1
 
 
 @inner(fastmath=FAST, forceinline=True)
+def _is_met_before(q: int, s: int, l: int, met: Any, batch: Any) -> bool:
+    """Whether a grain meets the face in row q before that in row s, on lane l, as it moves now."""
+    if met[q, F.BY] >= 0.0 or met[q, F.GAP] == B.FAR:
+        return False
+    closing = 0.0
+    for a in range(3):
+        closing -= batch[B.RELATIVE_VELOCITY + 4 * l + a] * met[q, F.AWAY + a]
+    ahead = (met[q, F.DISTANCE] - met[s, F.DISTANCE] - batch[B.OVERLAP + l]) * batch[B.CLOSING + l]
+    own = -batch[B.OVERLAP + l] * closing
+    return closing > 0.0 and (ahead < own or (ahead == own and q < s))
+
+
+@inner(fastmath=FAST, forceinline=True)
 def _like(k: int, g: int, met: Any) -> bool:
-    """Whether the normals in two rows are less than 60 deg apart."""
+    """Whether the normals in two rows, not both of planes, are less than 60 deg apart."""
     a = F.AWAY
     along = met[k, a] * met[g, a] + met[k, a + 1] * met[g, a + 1] + met[k, a + 2] * met[g, a + 2]
-    return k != g and along > 0.5
+    return k != g and along > 0.5 and (met[k, F.SLOT] >= 0.0 or met[g, F.SLOT] >= 0.0)
 
 
 @inner(fastmath=FAST, forceinline=True)
