@@ -144,7 +144,7 @@ def test_a_tip_gives_no_energy_and_takes_none(n):
 @pytest.mark.parametrize("n", full_but([96], [24, 96, 200]))
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_a_grain_that_meets_many_facets_at_once_is_not_stopped_many_times_over(n, friction):
-    """All with their whole force in the first step, 96 facets gave what the account had as energy of the step."""
+    """With their whole force each, 96 facets gave what the account had as energy of the step."""
     half = math.radians(40)
     high = R / math.sin(math.atan(math.tan(half) * math.cos(math.pi / n))) + 5e-5
     made = scene([[1e-6, 2e-6, high]], D, walls=[triangles("m", cone(n, half))], stiffness=K, restitution=0.5,

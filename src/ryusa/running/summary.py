@@ -52,10 +52,13 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
         why += "; a clump hit off its centre has less effective mass, and rebounds less (design/0022)"
     if summary["restitution"].get("adhesion"):
         why += "; adhesion takes more from slow impacts (design/0024)"
+    slid = f"; with sliding {_measured(shear['sliding'])}, where friction decides and not this number"
+    if not any(one["n"] for one in shear["sliding"].values()):
+        slid = ""  # said of measured contacts only
     return [
         f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])}; {why}",
-        f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
-        f"with sliding, where friction decides and not this number, {_measured(shear['sliding'])}",
+        f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}"
+        f"{slid}",
     ]
 
 

@@ -117,10 +117,10 @@ def share_forces(
 def leave_to_shares(
     b: int, face_lanes: Any, selected: Any, candidates: CandidateArrays, met: Any, batch: Any
 ) -> None:  # fmt: skip
-    """Of faces whose forces a grain shares let only the first be touched ahead, and none beside one that holds it.
+    """Let only the first of faces that share a force be touched ahead, and none beside one in touch.
 
     The share of the others is not known before they have an overlap: they begin at the next kick, by their
-    place. Each with its whole force, the facets of a tip that a grain meets at once stopped it many times over.
+    place. Each with its whole force, facets of a tip that are met at once stopped a grain many times over.
     """
     first, slot, count = candidates.first[b], candidates.slot, candidates.face_count[b]
     for n in range(face_lanes[B.LANES]):
