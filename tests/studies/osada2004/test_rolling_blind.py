@@ -26,7 +26,7 @@ def test_the_fit_finds_the_coefficient_that_made_the_slopes():
     found = fit(lambda mu_r: 36.0 + 4.0 * math.log(mu_r))
     assert found.crossing(38.0) == pytest.approx(math.exp(0.5))
     assert found.chosen(38.0) == found.crossing(38.0) and not found.edge(38.0)
-    place = math.log(math.exp(0.5) / 0.25) / math.log(16.0)
+    place = math.log(math.exp(0.5) / 0.25) / math.log(8.0)
     assert place - 0.1 < min(found.places(38.0, 200)) < place < max(found.places(38.0, 200)) < place + 0.1
 
 
@@ -34,7 +34,7 @@ def test_where_heaps_get_no_steeper_the_edge_is_named_and_the_smallest_such_coef
     found = fit(lambda mu_r: min(33.0, 33.0 + 5.0 * math.log(mu_r)))  # level from 1 on
     assert math.isnan(found.crossing(38.0))
     assert found.chosen(38.0) == 1.0
-    assert "upper edge of the box, mu_r 4" in found.edge(38.0) and "above 33 deg" in found.edge(38.0)
+    assert "upper edge of the box, mu_r 2" in found.edge(38.0) and "above 33 deg" in found.edge(38.0)
     steep = fit(lambda mu_r: 45.0 + mu_r)
     assert "lower edge of the box, mu_r 0.25" in steep.edge(38.0)
     assert steep.chosen(38.0) == 0.25
@@ -97,7 +97,7 @@ def test_a_coefficient_serves_if_every_part_holds(missed, n):
 def test_the_verdict_names_the_edge_where_no_coefficient_gives_the_slope():
     (finding,) = part.judge(made(STANDARD, slope=lambda mu_r: min(33.0, 33.0 + math.log(mu_r))), STANDARD)
     (place,) = [one for one in finding.base if one.part == part.PLACE]
-    assert place.holds is False and "upper edge of the box, mu_r 4" in place.note
+    assert place.holds is False and "upper edge of the box, mu_r 2" in place.note
     assert "upper edge of the box" in finding.decided_by and "none of them" in finding.decided_by
 
 
