@@ -14,7 +14,7 @@ from ryusa.study import Level, Outcome, Plan
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))
 T = np.linspace(1.0, 20.0, 20)
-KNOWN = part.River(400, 300, 0.006, T, np.linspace(20.0, 35.0, 20), 3.0)
+KNOWN = part.River(400, 300, 0.006, 0.2, 0.1, T, np.linspace(20.0, 35.0, 20), 3.0)
 
 
 def outcomes(plan, long=KNOWN, short=KNOWN):
@@ -66,7 +66,7 @@ def test_where_nothing_comes_to_rest_the_row_says_so(short):
 def test_factors_are_the_registered_ones():
     assert set(REGISTRATION.claims["debris-river"].factors) == set(part.DESIGN.levels)
     short = [one for one in part.tasks(STANDARD) if part.SHORT in str(one.overrides)]
-    assert len(short) == 4  # of 8
+    assert len(short) == 4 and len(part.tasks(STANDARD)) == 4 * 17 + 4
     full = Plan(Level.FULL, (1,))
     assert all(one in part.settings(full) for one in part.paired(full))
     assert len(part.paired(STANDARD)) == 1 and not REGISTRATION.claims["debris-river-time"].factors
@@ -91,5 +91,6 @@ def test_grains_past_the_break_are_counted(monkeypatch):
     assert (found.past, found.at_rest) == (4, 1)
     assert found.share == 0.25
     assert found.overlap == pytest.approx(0.015)
+    assert (found.below, found.above) == (0.0, 0.5)
     assert found.speed == pytest.approx(14.0)
     assert found.way == pytest.approx(17.0)

@@ -12,8 +12,14 @@ from ryusa.measure import front
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._bands import band
-from ryusa.studies.osada2004._factors import PARTING_RULE, SLIP_RULE, STIFFNESS_RATIO
-from ryusa.studies.osada2004._parts import PACKING, PHI, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._factors import (
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa.studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
 from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
 
 FIGURE = "debris-river"
@@ -23,7 +29,7 @@ CASE = "debris_river"
 LONG, SHORT = "0.01 s", "0.001 s"  # collision times of d = 20 cm, Eq. (8)
 DESIGN = Design(
     (
-        Factor(PHI, {"30 deg": {}, "40 deg": {"contact.friction_angle": "40 deg"}}),
+        friction_angle(),
         SLIP_RULE,
         PARTING_RULE,
         STIFFNESS_RATIO,
@@ -39,6 +45,7 @@ DESIGN = Design(
 )
 BREAK = 25.0  # where the slope changes [m]
 STRETCH = 27.5, 40.0  # between which the speed of the front is taken [m]
+STABLE = 0.001, 0.01  # overlaps over d that the paper calls stable [-]
 REST = 0.1  # speed over sqrt(g d) below which a grain is at rest [-]
 GRAVITY = 9.8  # [m/s2]
 REST_PART = "share of the grains past the break that are at rest at the end"
@@ -57,6 +64,7 @@ class River:
     past : grains that are past the break at the end, or have left.
     at_rest : of them, those that are there and at rest.
     overlap : largest overlap over d, mean over contacts of the tracked grains after settling [-].
+    below, above : shares of those contacts with overlaps below and above what the paper calls stable [-].
     t, front : times of the frames [s] and place beyond which 5 % of the volume that has moved is [m].
     speed : mean speed of that front over STRETCH [m/s]; nan where it does not come so far.
     """
@@ -64,6 +72,8 @@ class River:
     past: int
     at_rest: int
     overlap: float
+    below: float
+    above: float
     t: Floats
     front: Floats
     speed: float
@@ -80,12 +90,8 @@ class River:
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first; others at the full level alone.
-
-    With friction of 10 and 20 deg, as other parts have it, 13 of 32 runs stopped: where water runs out of a
-    dense fast flow, drag acts within less than a step that resolves contacts of 0.01 s.
-    """
-    return DESIGN.settings(plan.pick(0, 0, 8))
+    """Sets of free choices, the shipped one first."""
+    return DESIGN.settings(n_settings(plan))
 
 
 def paired(plan: Plan) -> list[dict[str, str]]:
@@ -128,11 +134,17 @@ def measure(results: Results, one: CaseRun) -> River:
     return River(
         int(past.sum() + (~there).sum()),
         int((past & still).sum()),
-        float(overlaps.mean()) if len(overlaps) else math.nan,
+        _mean(overlaps),
+        _mean((overlaps < STABLE[0]).astype(np.float64)),
+        _mean((overlaps > STABLE[1]).astype(np.float64)),
         moving.t,
         moving.front,
         speed,
     )
+
+
+def _mean(values: Floats) -> float:
+    return float(values.mean()) if len(values) else math.nan
 
 
 def _runs(found: Found, plan: Plan, chosen: Mapping[str, str], time: str) -> list[River]:
@@ -185,6 +197,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "its way past the break": ("m", lambda one: one.way),
         "share at rest": ("-", lambda one: one.share),
         "overlap over d": ("-", lambda one: one.overlap),
+        f"share of contacts above {STABLE[1]:g} d": ("-", lambda one: one.above),
+        f"and below {STABLE[0]:g} d": ("-", lambda one: one.below),
     }
     also = tuple(
         f"collision time {time}, as shipped: "
@@ -222,7 +236,8 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     return [
         {
             **chosen, "collision time": time, "seed": seed, "past_break": one.past, "at_rest": one.at_rest,
-            "overlap_over_d": one.overlap, "way_past_break_m": one.way, "front_speed_m_per_s": one.speed,
+            "overlap_over_d": one.overlap, "share_below_band": one.below, "share_above_band": one.above,
+            "way_past_break_m": one.way, "front_speed_m_per_s": one.speed,
         }
         for time, sets in ((LONG, settings(plan)), (SHORT, paired(plan)))
         for chosen in sets
