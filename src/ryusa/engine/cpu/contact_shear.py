@@ -43,6 +43,32 @@ from ryusa.laws.contact_step import contact_force
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.geometry import wrap
 
+_ROUND_OFF = 1e-12  # of a square of distances, by which pairs that just miss each other are kept
+
+
+@inner(fastmath=FAST)
+def _leave_out_apart(
+    begin: int, end: int, n_solid: int, c: Any, x: Any, v: Any, i_of: Any, j_of: Any, touching: Any,
+    selected: Any,
+) -> int:  # fmt: skip
+    """Take selected pairs of grains that stay apart until the next step out again; returns how many are left.
+
+    In a dense flow more pairs are near to each other than touch, and most of them do not approach.
+    """
+    dt, l_x, l_y, kept = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], begin
+    for l in range(begin, end):  # no branch: which pairs approach is not predictable
+        k = selected[l]
+        i, j = i_of[k], j_of[k]
+        other = j if j < n_solid else i  # a wall stays in
+        d_x, d_y = wrap(x[i, 0] - x[other, 0], l_x), wrap(x[i, 1] - x[other, 1], l_y)
+        d_z = x[i, 2] - x[other, 2]
+        square = d_x * d_x + d_y * d_y + d_z * d_z
+        nearer = d_x * (v[i, 0] - v[other, 0]) + d_y * (v[i, 1] - v[other, 1]) + d_z * (v[i, 2] - v[other, 2])
+        gap = square - (x[i, 3] + x[other, 3]) * math.sqrt(square)  # times the distance, as `nearer`
+        selected[kept] = k
+        kept += int(touching[k] != 0) | int(gap + nearer * dt <= _ROUND_OFF * square)
+    return kept
+
 
 @inner(fastmath=FAST)
 def _gather_shears(m: int, lanes: int, selected: Any, j_of: Any, n_solid: int, eta: Any, batch: Any) -> None:
@@ -219,10 +245,12 @@ def make_contact_shear(kind: ForcesKind) -> Any:
         while True:
             while waiting < B.LANES and k < end:
                 some = min(B.LANES, end - k)
+                had = waiting
                 waiting = filter_pairs(
                     held.plane_case, reach, k, some, waiting, n_solid, c, x, i_of, j_of, touching, points,
                     normals, met, slot, separation, inside, selected,
                 )  # fmt: skip
+                waiting = _leave_out_apart(had, waiting, n_solid, c, x, v, i_of, j_of, touching, selected)
                 k += some
             m = min(waiting, B.LANES)
             if m == 0:
