@@ -105,7 +105,7 @@ def judge(name: str, rows: Rows) -> Rows:
                 row["off"] = statistics.mean(gaps) / unit
                 if len(gaps) > 1:
                     row["standard error"] = statistics.stdev(gaps) / len(gaps) ** 0.5 / abs(unit)
-                row |= {"beside": PEERS[code], "band": band[1], "within": abs(row["off"]) <= band[1]}
+                row |= {"beside": PEERS[code], "band": band[1], "within": bool(abs(row["off"]) <= band[1])}
             found.append(row)
         found += _curves(name, code, own, list(peer.values()))
     return found
@@ -125,7 +125,7 @@ def _curves(name: str, code: str, own: Rows, peer: Rows) -> Rows:
     band = BANDS[what][1]
     return [
         {"case": name, "code": code, "what": what, "n": len(seeds), "off": off, "beside": PEERS[code],
-         "band": band, "within": off <= band}
+         "band": band, "within": bool(off <= band)}
     ]  # fmt: skip
 
 

@@ -26,10 +26,14 @@ from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.model.scene import EventRule
 from ryusa.water import momentum_balance as m
+from ryusa.water._kernel import parameters_of
 from ryusa.water.coupling import Coupling
+from ryusa.water.exchange_arrays import WaterLaws
 from ryusa.water.row import shape_of
+from ryusa.water.row_exchange import RowTold, leave_dry_ends, meet_within_step, rates_at_stations
 from ryusa.water.row_grains import GrainsInRow
-from ryusa.water.row_sums import GrainPlaces, place_grains
+from ryusa.water.row_sums import DRAG_U, N_ROW_SUM, GrainPlaces, place_grains
+from ryusa.water.slice_sums import DRAG_NOW
 
 D, G = 2.0e-3, 9.80665
 WALLS = (RowEnd(EndKind.WALL), RowEnd(EndKind.WALL))
@@ -334,3 +338,69 @@ def test_a_row_whose_length_is_not_the_period_of_the_grains_is_refused():
     made, first = cloud()
     with pytest.raises(ValueError, match="must agree"):
         GrainsInRow.begin(made, row_of(column_of(1.0), 0.3, 10), first.x)
+
+
+def test_drag_within_less_than_a_step_leaves_the_motion_as_short_steps_have_it():
+    """A viscous liquid and dense grains set off down a slope, at rates that long steps do not resolve.
+
+    A hundred long steps: each is a hundredth of the time, and the scheme of first order.
+    """
+    length, found = 40 * D, {}
+    at = lattice(length, 20.0 * D, 1.02 * D, low=D)
+    for dt in (2e-5, 1e-6):
+        fixed, first = cloud(at=at, length=length, nu=6e-4, hindrance=Hindrance.DI_FELICE)
+        fixed = replace(fixed, dt=dt)
+        row = row_of(column_of(length * D, nu=6e-4), length, 4)
+        start = GrainsInRow.begin(fixed, row, first.x).at_rest(np.full(4, 0.05))
+        stiff = 0.0
+        for one in advance_together((fixed, first), row, start, round(2e-3 / dt), longest=1):
+            grains, now, _, v, _ = one
+            stiff = max(stiff, grains.fastest * dt)
+            found[dt] = stiff, grains.fastest_grain * dt, v[:, 0].mean(), now.u[:, 10:90].mean()
+    (stiff, by_grain, v, u), (_, _, v_short, u_short) = found.values()
+    assert stiff > 1.5 and by_grain < 1.0
+    assert v == pytest.approx(v_short, rel=0.05)
+    assert u == pytest.approx(u_short, rel=0.15)  # 1 + e times its slip, which is a hundredth of that
+
+
+def told_at(row, u_free):
+    """What grains are told in a row, with one speed that they met."""
+    stations, segments, n = (
+        row.n_segment + (not row.periodic),
+        row.n_segment + 2 * (not row.periodic),
+        row.column.n,
+    )
+    return RowTold(
+        np.zeros((stations, 6, n)), np.zeros((stations, n)), np.full((stations, n), u_free),
+        np.zeros((segments, n)), np.zeros(stations), *np.zeros((3, segments, n)),
+    )  # fmt: skip
+
+
+def test_the_rate_of_drag_follows_a_slip_that_has_grown():
+    row = row_of(column_of(1.0), 1.0, 2)
+    p, shape, told = parameters_of(row.column), shape_of(row), told_at(row, 0.2)
+    sums = np.zeros((N_ROW_SUM, *told.phi.shape))
+    sums[DRAG_NOW], sums[DRAG_U] = 3.0, 3.0 * 0.1
+    laws, s = WaterLaws.of(cloud()[0]), 60.0 * 1e-6 / D
+    alike, slower, faster = (
+        rates_at_stations(p, 0.5, laws, shape, sums, told, np.full(told.u.shape, u), s)
+        for u in (0.2, 0.15, 0.5)
+    )
+    assert np.array_equal(slower, alike)  # a slip that has shrunk may come back
+    assert faster == pytest.approx(alike * (0.4 + s) / (0.1 + s), rel=1e-12)
+    told.u[:] = 0.5
+    told.u_free[:] = 0.5
+    meet_within_step(shape, 0.2 / alike.max(), alike, sums, told)
+    assert (told.u_free == 0.5).all()  # a step resolves it
+    meet_within_step(shape, 10.25 / alike.max(), alike, sums, told)
+    assert told.u_free == pytest.approx((0.5 + 10.0 * 0.1) / 11.0, rel=1e-12)
+
+
+def test_grains_beyond_an_end_act_on_no_water_where_there_is_none():
+    ends = {"upstream": RowEnd(EndKind.WALL), "downstream": RowEnd(EndKind.FREE_FALL)}
+    row = row_of(column_of(1.0), 1.0, 2, **ends)
+    sums, wet = np.ones((2, 4, row.column.n)), np.ones((4, row.column.n))
+    wet[3], wet[0, 60:] = 0.0, 0.0
+    leave_dry_ends(shape_of(row), wet, sums)
+    assert (sums[:, 3] == 0.0).all() and (sums[:, 0, 60:] == 0.0).all()
+    assert (sums[:, 1:3] == 1.0).all() and (sums[:, 0, :60] == 1.0).all()

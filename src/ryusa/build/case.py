@@ -25,7 +25,7 @@ from ryusa.build.row import row_of
 from ryusa.build.saltation import saltation
 from ryusa.build.stream import stream_bed, stream_walls
 from ryusa.build.table import table
-from ryusa.build.traffic import before_feeding, moving_with, with_feeds
+from ryusa.build.traffic import before_feeding, leaving_row, moving_with, with_feeds
 from ryusa.build.wall_checks import (
     refuse_crushing_servos,
     refuse_fast_walls,
@@ -152,7 +152,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     open_below, open_above = case.domain.low is None, case.domain.high is None
     scene, state = before_feeding(*assemble(placement, laws), traffic, open_below, open_above)
     scene = with_room(with_walls(scene, walls), open_below, open_above)
-    scene = moving_with(scene)
+    scene = leaving_row(moving_with(scene))
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)
     refuse_idle_belts(case, scene)

@@ -196,6 +196,21 @@ def moving_with(scene: Scene) -> Scene:
     return replace(scene, traffic=replace(traffic, interval=steps))
 
 
+def leaving_row(scene: Scene) -> Scene:
+    """The scene with instants near enough to each other for grains that leave a row of columns.
+
+    Beyond an open end a grain counts as lying in the last segment, which those that follow need: between two
+    instants none goes farther than half the smallest diameter, at the speed of a fall through all of the row.
+    """
+    traffic, row = scene.traffic, scene.row
+    if traffic is None or row is None or row.periodic or not traffic.exits:
+        return scene
+    levels = row.column.g_x * row.x - row.g_z * row.bottom
+    fall = float(np.ptp(levels)) + row.g_z * row.column.dz * row.column.n
+    steps = int(_TRAVEL * float(scene.d.min()) / math.sqrt(2.0 * fall) / scene.dt)
+    return replace(scene, traffic=replace(traffic, interval=max(1, min(steps, traffic.interval))))
+
+
 def steps_between(feeds: Sequence[Feed], d_min: float, g: float, dt: float) -> int:
     """Steps between two instants at which grains enter and leave.
 

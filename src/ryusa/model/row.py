@@ -288,12 +288,14 @@ class RowGrainState(ByShape):
     x : their centres at the last exchange [m], for their volumes in the cells, shape (n_grain, 3).
     w : vertical speed of the water in the segments, relative to the bottom [m/s], shape (n_all, n).
     force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n_all, n).
+    u : speed of the water at the stations as free grains meet it [m/s], shape (n_station, n).
     eddies : present eddies of the grains; None without fluctuations.
     """
 
     x: Floats
     w: Floats
     force_z: Floats
+    u: Floats
     eddies: Eddies | None = None
 
 

@@ -252,7 +252,10 @@ class _Reader:
         if values.get(about):
             two = {name: self._floats(f"{about}/{name}", shapes["content"]) for name in ("w", "force_z")}
             x = self._positions(f"{about}/x", n)
-            grains = RowGrainState(x, two["w"], two["force_z"], self._eddies(f"{about}/eddies", n))
+            u = state.u  # checkpoints of earlier versions keep no other
+            if f"{about}/u" in self._arrays:
+                u = self._floats(f"{about}/u", shapes["u"])
+            grains = RowGrainState(x, **two, u=u, eddies=self._eddies(f"{about}/eddies", n))
             if not values.get("fluid"):
                 raise ValueError("a row of water without the water at its grains")
         elif len(self._scene.d_fixed) + n:

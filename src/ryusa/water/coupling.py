@@ -254,7 +254,8 @@ class Coupling:
         arrays.reaches = bool(out[step.REACHES])
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, float(out[step.RESIDUAL]))
         fastest = float(out[step.FASTEST])
-        self.steps = steps_resolved(fastest, self.scene.dt, self.longest, *self._about[1:])
+        refuse_unresolved(fastest, self.scene.dt, STIFF, *self._about[1:])
+        self.steps = steps_resolved(fastest, self.scene.dt, self.longest)
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR], self.ids)
@@ -345,8 +346,18 @@ class Coupling:
         return sampled
 
 
-def steps_resolved(fastest: float, dt: float, longest: int, t: float, step: int) -> int:
-    """Steps of dt [s] for which an interval resolves the drag, at most `longest`.
+def steps_resolved(fastest: float, dt: float, longest: int) -> int:
+    """Steps of dt [s] for which an interval resolves the drag, at least one and at most `longest`.
+
+    `fastest` is the largest rate of relaxation by drag [1/s].
+    """
+    if fastest * dt * longest <= STIFF:
+        return longest
+    return max(math.floor(STIFF / (fastest * dt)), 1)
+
+
+def refuse_unresolved(fastest: float, dt: float, most: float, t: float, step: int) -> None:
+    """Refuse a step of dt [s] that is longer than `most` of the time in which drag acts.
 
     Parameters
     ----------
@@ -355,12 +366,9 @@ def steps_resolved(fastest: float, dt: float, longest: int, t: float, step: int)
 
     Raises
     ------
-    WaterError : a single step does not resolve it.
+    WaterError : a step does not resolve it.
     """
-    if fastest * dt * longest <= STIFF:
-        return longest
-    most = math.floor(STIFF / (fastest * dt))
-    if most < 1:
+    if fastest * dt > most:
         raise WaterError(
             f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
             f"{dt:.3g} s does not resolve",
@@ -368,7 +376,6 @@ def steps_resolved(fastest: float, dt: float, longest: int, t: float, step: int)
             t=t,
             hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
         )
-    return most
 
 
 def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tuple[Floats, Floats]:

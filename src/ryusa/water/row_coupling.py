@@ -13,7 +13,7 @@ from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
-from ryusa.water.coupling import steps_resolved
+from ryusa.water.coupling import refuse_unresolved, steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
@@ -136,8 +136,8 @@ class RowCoupling:
         else:
             self.state = grains.exchange(self.state, x, v, impulse, time)
             self.sampled, now = grains.sampled, self.state
-            longest = self.row.column.interval
-            self.steps = steps_resolved(grains.fastest, self.scene.dt, longest, now.t, now.steps)
+            refuse_unresolved(grains.fastest_grain, self.scene.dt, 1.0, now.t, now.steps)
+            self.steps = steps_resolved(grains.fastest, self.scene.dt, self.row.column.interval)
         self.passing = (self.state.passed - before) / time
         self.exchanges += 1
         self.worst = max(self.worst, _residual(self.state.budgets))

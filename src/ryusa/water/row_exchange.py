@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ryusa.model.column import STIFF
 from ryusa.model.row import INFLOW, OPEN, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
@@ -21,6 +22,7 @@ from ryusa.water.row_grain_sums import MetByGrains
 from ryusa.water.row_step import RowEnds, RowShape, RowWater, driving_gradient, fluxes_along
 from ryusa.water.row_sums import (
     BUOYED,
+    DRAG_U,
     GrainPlaces,
     RowBed,
     gradients_at_grains,
@@ -41,6 +43,7 @@ from ryusa.water.slice_sums import (
     SOLID_W,
 )
 
+SLOW = 60.0  # slip times d/nu at which both parts of drag, 24 nu/d + 0.4 w, are alike
 U_TAU_SQUARE, DRIFT = 7, 8  # columns of `table_of` behind those of `sample`
 
 
@@ -60,6 +63,7 @@ class RowTold(NamedTuple):
 
     stations: Floats  # rows of `time_step` at the stations, shape (n_station, 6, n)
     u: Floats  # speed there [m/s], shape (n_station, n)
+    u_free: Floats  # the same as free grains meet it, `meet_within_step`
     w: Floats  # vertical speed in the segments, relative to the bottom [m/s], shape (n_segment, n)
     gradient: Floats  # pressure gradient at the stations [Pa/m], shape (n_station,)
     wet: Floats  # share of the cells of the segments below the surface [-], shape (n_segment, n)
@@ -77,6 +81,27 @@ def continue_ends(shape: RowShape, sums: Floats) -> None:
 
 
 @kernel
+def leave_dry_ends(shape: RowShape, wet: Floats, sums: Floats) -> None:
+    """Let grains beyond an end act on no water where there is none, as beyond a free fall.
+
+    The last station would feel the grains of a whole segment with the water of half of one: then the
+    acceleration of the water and the added mass of dense grains drive each other.
+
+    Parameters
+    ----------
+    wet : share of the cells of the segments below the surface [-], shape (n_segment, n).
+    sums : of what acts, (m, n_segment, n).
+    """
+    first, end = shape.inner
+    if end - first == len(shape.bottom):
+        return
+    for beyond in (first - 1, end):
+        for k in range(wet.shape[1]):
+            if wet[beyond, k] <= 0.0:
+                sums[:, beyond, k] = 0.0
+
+
+@kernel
 def concentration_in_row(p: ColumnParameters, area: float, bed: RowBed, sums: Floats, phi: Floats) -> None:
     """Concentration of free and fixed grains in the segments, of the area [m2] each."""
     for i in range(len(phi)):
@@ -86,15 +111,16 @@ def concentration_in_row(p: ColumnParameters, area: float, bed: RowBed, sums: Fl
 
 @kernel
 def act_on_stations(
-    p: ColumnParameters, area: float, shape: RowShape, u: Floats, sums: Floats, sums_fixed: Floats,
-    acts: StationForces,
+    p: ColumnParameters, area: float, shape: RowShape, u: Floats, u_free: Floats, sums: Floats,
+    sums_fixed: Floats, acts: StationForces,
 ) -> None:  # fmt: skip
     """Forces at the stations from sums over grains in the segments, as `force_on_water`.
 
     Parameters
     ----------
     area : of the bottom of a segment [m2].
-    u : speed of the water at the stations in the interval [m/s], shape (n_station, n).
+    u, u_free : speed of the water at the stations in the interval, and as free grains met it [m/s], shape
+        (n_station, n).
     sums, sums_fixed : of `sum_grains_in_row` and of `sum_fixed_in_row`.
     acts : overwritten, but for `phi`.
 
@@ -111,7 +137,7 @@ def act_on_stations(
             given = 0.5 * (sums[GIVEN_X, a, k] / volume + sums[GIVEN_X, b, k] / volume)
             drag = 0.5 * (sums[GIVEN_DRAG, a, k] / volume + sums[GIVEN_DRAG, b, k] / volume)
             met = 0.5 * (sums[GIVEN_MET, a, k] / volume + sums[GIVEN_MET, b, k] / volume)
-            free = given + (drag * u[j, k] - met)
+            free = given + (drag * u_free[j, k] - met)
             if level > 0.0:
                 free -= level * 0.5 * (sums[BUOYED, a, k] / volume + sums[BUOYED, b, k] / volume)
             fixed = 0.5 * (sums_fixed[0, a, k] / volume + sums_fixed[0, b, k] / volume) * u[j, k]
@@ -141,16 +167,75 @@ def split_budgets(
 
 
 @kernel
-def fastest_in_row(
-    p: ColumnParameters, area: float, laws: WaterLaws, sums: Floats, by_grain: float, phi: Floats
-) -> float:
-    """Largest rate at which drag brings water and grains to one speed [1/s], as `fastest_relaxation`."""
+def fastest_in_row(p: ColumnParameters, area: float, laws: WaterLaws, sums: Floats, phi: Floats) -> float:
+    """Largest rate at which drag brings water to the speed of grains [1/s], as `fastest_relaxation`."""
     fastest = 0.0
     for i in range(len(phi)):
         for k in range(p.n):
             water = laws.rho_w * max(1.0 - phi[i, k], 1.0 - DENSEST)
             fastest = max(fastest, sums[DRAG_NOW, i, k] / (area * p.dz) / water)
-    return max(fastest, by_grain)
+    return fastest
+
+
+@kernel
+def rates_at_stations(
+    p: ColumnParameters, area: float, laws: WaterLaws, shape: RowShape, sums: Floats, told: RowTold,
+    u: Floats, slow: float,
+) -> Floats:  # fmt: skip
+    """Rates at which drag will bring the water to the speed of the free grains [1/s], shape (n_station, n).
+
+    Parameters
+    ----------
+    sums : of `sum_grains_in_row`, for the drag over slip in the last interval.
+    told : what the grains met in it.
+    u : speed of the water from now on [m/s], shape (n_station, n).
+    slow : slip at which both parts of drag are alike, `SLOW` nu/d [m/s].
+
+    Notes
+    -----
+    Drag over slip grows with the slip w as 24 nu/d + 0.4 w: a slip that has grown lets drag act faster than
+    it did, one that has shrunk is not trusted to last.
+    """
+    volume = area * p.dz
+    rates = np.zeros(u.shape)
+    for j in range(len(shape.left)):
+        a, b = shape.left[j], shape.right[j]
+        for k in range(p.n):
+            drag = sums[DRAG_NOW, a, k] + sums[DRAG_NOW, b, k]
+            if shape.kind[j] == OPEN and drag > 0.0:
+                speed = (sums[DRAG_U, a, k] + sums[DRAG_U, b, k]) / drag
+                water = laws.rho_w * max(1.0 - 0.5 * (told.phi[a, k] + told.phi[b, k]), 1.0 - DENSEST)
+                grown = (abs(u[j, k] - speed) + slow) / (abs(told.u_free[j, k] - speed) + slow)
+                rates[j, k] = 0.5 * drag / volume / water * max(grown, 1.0)
+    return rates
+
+
+@kernel
+def meet_within_step(shape: RowShape, dt: float, rates: Floats, sums: Floats, told: RowTold) -> None:
+    """Let free grains meet water that drag has brought nearer to them, where a step does not resolve that.
+
+    Parameters
+    ----------
+    dt : the interval, of one step [s].
+    rates : of `rates_at_stations`.
+    sums : of `sum_grains_in_row`, for the grains now.
+    told : `u_free` is overwritten where needed.
+
+    Notes
+    -----
+    Little water in a dense fast flow takes their speed v within less than a step. There the grains meet
+    (u + e v)/(1 + e) with e = r dt - 1/4, r the rate of the water: an implicit step for that part of r dt
+    which an explicit one does not resolve. The water moves by r dt/(1 + e) of the difference, never by more
+    than all of it, and has what the grains have not: momentum is kept.
+    """
+    for j in range(len(shape.left)):
+        a, b = shape.left[j], shape.right[j]
+        for k in range(rates.shape[1]):
+            excess = rates[j, k] * dt - STIFF
+            if excess > 0.0:
+                drag = sums[DRAG_NOW, a, k] + sums[DRAG_NOW, b, k]
+                speed = (sums[DRAG_U, a, k] + sums[DRAG_U, b, k]) / drag
+                told.u_free[j, k] = (told.u[j, k] + excess * speed) / (1.0 + excess)
 
 
 @kernel
@@ -178,6 +263,7 @@ def tell(
     volume, per_dx = area * p.dz, 1.0 / shape.dx
     fluxes_along(p, shape, ends, told.phi, dt, water, flux, tilt)
     told.u[:] = water.u
+    told.u_free[:] = water.u
     told.wet[:] = water.wet / p.dz
     rise = np.zeros((len(shape.bottom), p.n))  # of the mixture, by what converges below [m/s]
     periodic = len(shape.kind) == len(shape.bottom)
@@ -244,7 +330,7 @@ def table_of(shape: RowShape, told: RowTold, turbulence: Floats) -> Floats:
     """
     turbulent = len(turbulence) > 0
     table = np.zeros((told.phi.shape[0], told.phi.shape[1], 3 * FOUR if turbulent else 2 * FOUR))
-    of_both_stations(shape, told.u, table[:, :, 0])
+    of_both_stations(shape, told.u_free, table[:, :, 0])
     of_both_stations(shape, told.stations[:, ROW_SHEAR], table[:, :, 2])
     of_both_stations(shape, told.stations[:, ROW_DU_DT], table[:, :, 4])
     of_both_stations(shape, told.stations[:, ROW_DTAU_DZ], table[:, :, 5])

@@ -16,11 +16,11 @@ from ryusa.water.at_grains import given_by_grains
 from ryusa.water.exchange import DRY, Ints, cut_grains
 from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays
 from ryusa.water.row_step import RowShape
-from ryusa.water.row_sums import BUOYED, GrainPlaces, place_grains
+from ryusa.water.row_sums import BUOYED, DRAG_U, GrainPlaces, place_grains
 from ryusa.water.slice_sums import BAD_GRAIN, DRAG_NOW, GIVEN_X, RATE, SOLID, SOLID_W
 
 N_GIVEN = 5  # GIVEN_X to GIVEN_MET, and BUOYED
-N_PRESENT = 3  # SOLID, SOLID_W, DRAG_NOW
+N_PRESENT = 4  # SOLID, SOLID_W, DRAG_NOW, DRAG_U
 
 
 class MetByGrains(NamedTuple):
@@ -109,7 +109,7 @@ def cut_in_row(
     Returns
     -------
     values : of each grain, what its cells receive over its slices: solid volume, its flux upwards, drag over
-        slip, and its flux along x, shape (n_grain, N_PRESENT + 1).
+        slip, that times its speed along x, and its flux along x, shape (n_grain, N_PRESENT + 1).
     """
     values = np.empty((len(z), N_PRESENT + 1))
     bad = place_grains(x[:, 0], x_low, p.z_low, shape, places)
@@ -129,7 +129,8 @@ def cut_in_row(
         values[i, 0] = solid
         values[i, 1] = (v[i, 2] - v[i, 0] * places.tilt[i]) * solid
         values[i, 2] = impulse[i, DRAG]
-        values[i, 3] = v[i, 0] * solid
+        values[i, 3] = impulse[i, DRAG] * v[i, 0]
+        values[i, N_PRESENT] = v[i, 0] * solid
         largest[RATE] = max(largest[RATE], impulse[i, DRAG] / grains.inertia[i])
     return values
 
@@ -160,7 +161,7 @@ def add_present(
             gate = places.gate[i, b]
             if not begin <= gate < end:
                 continue
-            part = values[i, 3] * (places.past[i] if b == 1 else 1.0 - places.past[i])
+            part = values[i, N_PRESENT] * (places.past[i] if b == 1 else 1.0 - places.past[i])
             apart = min(max(shut[i, 2 * b] - low, 0), count) if shared > 1 else 0  # nothing passes into a dam
             for s in range(apart, count):
                 through[gate, low + s] += part * volumes[i, s]
@@ -172,10 +173,10 @@ def add_present(
                 segment = home if s < apart else at[i, b]
                 submerged += weights[i, b] * volumes[i, s] * wet[segment, low + s]
         per = 1.0 / submerged if submerged > DRY * cut.whole[i] else 0.0
-        p, q, r = values[i, 0], values[i, 1], values[i, 2] * per
+        p, q, r, t = values[i, 0], values[i, 1], values[i, 2] * per, values[i, 3] * per
         for b in range(shared):
             weight, apart = weights[i, b], min(max(shut[i, b] - low, 0), count)
-            p_b, q_b, r_b = p * weight, q * weight, r * weight
+            p_b, q_b, r_b, t_b = p * weight, q * weight, r * weight, t * weight
             for s in range(count):
                 segment = home if s < apart else at[i, b]
                 if not begin <= segment < end:
@@ -184,6 +185,7 @@ def add_present(
                 cell[0] += p_b * volume
                 cell[1] += q_b * volume
                 cell[2] += r_b * volume * share
+                cell[3] += t_b * volume * share
 
 
 @kernel
@@ -195,7 +197,7 @@ def as_rows(given: Floats, present: Floats, sums: Floats) -> None:
                 sums[GIVEN_X + c, i, k] = given[i, k, c]
             sums[BUOYED, i, k] = given[i, k, N_GIVEN - 1]
             sums[SOLID, i, k], sums[SOLID_W, i, k] = present[i, k, 0], present[i, k, 1]
-            sums[DRAG_NOW, i, k] = present[i, k, 2]
+            sums[DRAG_NOW, i, k], sums[DRAG_U, i, k] = present[i, k, 2], present[i, k, 3]
 
 
 @kernel

@@ -12,6 +12,7 @@ import numpy as np
 from ryusa.laws.families import BedKind, Fluctuations
 from ryusa.model import Scene
 from ryusa.model.arrays import Floats
+from ryusa.model.column import STIFF
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_SAMPLED, SHEAR
 from ryusa.model.row import ColumnRow, PorousSolid, RowGrainState, RowState
@@ -24,6 +25,7 @@ from ryusa.water.fixed_grains import steady_start
 from ryusa.water.row import GrainAction, RowArrays, advance_row, row_at_rest
 from ryusa.water.row_exchange import (
     DRIFT,
+    SLOW,
     U_TAU_SQUARE,
     RowTold,
     StationForces,
@@ -31,7 +33,10 @@ from ryusa.water.row_exchange import (
     concentration_in_row,
     continue_ends,
     fastest_in_row,
+    leave_dry_ends,
     means_at_grains,
+    meet_within_step,
+    rates_at_stations,
     split_budgets,
     table_of,
     tell,
@@ -51,6 +56,7 @@ from ryusa.water.row_sums import (
 from ryusa.water.row_threads import RowThreads, equal_parts, rows_of, sum_grains_shared
 from ryusa.water.slice_sums import (
     BAD_GRAIN,
+    DRAG_NOW,
     N_SUM_FIXED,
     RATE,
     SOLID,
@@ -67,7 +73,8 @@ class GrainsInRow:
     solid : the porous solid of the row, beside the grains.
     told : water that the grains meet in the present interval.
     sampled : the same at the grains, columns of `model.fluid`.
-    fastest : largest rate at which drag brought water and grains to one speed in the last interval [1/s].
+    fastest, fastest_grain : largest rate at which drag brought water and grains to one speed in the last
+        interval, and a grain to that of the water [1/s].
     worst : largest residual of the momentum of a station so far, over its largest term [-].
     eddies : present eddies of the grains; None without fluctuations.
     threads : share the loops over grains.
@@ -79,6 +86,7 @@ class GrainsInRow:
     told: RowTold
     sampled: Floats
     fastest: float
+    fastest_grain: float
     worst: float
     x: Floats  # centres at the last exchange [m], shape (n_grain, 3)
     _arrays: RowArrays
@@ -133,11 +141,11 @@ class GrainsInRow:
             np.arange(len(there)), z_bed, d_bed, np.zeros((segments, column.n)), column.bed is BedKind.ROUGH
         )
         told = RowTold(
-            np.zeros((stations, 6, column.n)), np.zeros((stations, column.n)), np.zeros((segments, column.n)),
-            np.zeros(stations), *np.zeros((3, segments, column.n)),
+            np.zeros((stations, 6, column.n)), np.zeros((stations, column.n)), np.zeros((stations, column.n)),
+            np.zeros((segments, column.n)), np.zeros(stations), *np.zeros((3, segments, column.n)),
         )  # fmt: skip
         made = GrainsInRow(
-            scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, np.array(x), arrays,
+            scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, 0.0, np.array(x), arrays,
             float(column.area) / row.n_segment, WaterLaws.of(scene),
             GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places,
             MetByGrains.of(n), z,
@@ -164,14 +172,19 @@ class GrainsInRow:
     ) -> "GrainsInRow":  # fmt: skip
         """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
         grains = GrainsInRow.begin(scene, row, np.array(found.x), state, threads)
-        grains.told.w[:], grains.told.force_z[:] = found.w, found.force_z
+        grains.told.w[:], grains.told.force_z[:], grains.told.u_free[:] = found.w, found.force_z, found.u
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
 
     def snapshot(self) -> RowGrainState:
         """All that `resume` needs, beside the water and the water at the grains."""
         told = self.told
-        kept = self.x.copy(), told.w.copy(), told.force_z.copy()
+        kept = (
+            self.x.copy(),
+            told.w.copy(),
+            told.force_z.copy(),
+            told.u_free.copy(),
+        )
         for one in kept:
             one.flags.writeable = False
         return RowGrainState(*kept, self.eddies)
@@ -196,6 +209,7 @@ class GrainsInRow:
         """
         other = GrainsInRow.begin(self.scene, self.row, x, state, self.threads)
         other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
+        other.told.u_free[:] = self.told.u_free
         other.worst, other.eddies = self.worst, self.eddies
         other._sample(state)
         return other
@@ -291,9 +305,11 @@ class GrainsInRow:
             told.phi, fixed,
         )  # fmt: skip
         continue_ends(shape, fixed)
+        for acting in (sums[:SOLID], sums[DRAG_NOW:], fixed):
+            leave_dry_ends(shape, told.wet, acting)
         force, slope, phi_w, part = np.zeros((4, stations, p.n))
         acts = StationForces(force, slope, phi_w, part, told.phi, told.force_z)
-        act_on_stations(p, self._area, shape, told.u, sums, fixed, acts)
+        act_on_stations(p, self._area, shape, told.u, told.u_free, sums, fixed, acts)
         state = advance_row(
             row, state, dt, solid=self._at_rest(), arrays=self._arrays,
             grains=GrainAction(told.phi[row.inner], force, slope, np.zeros_like(force), phi_w),
@@ -303,10 +319,16 @@ class GrainsInRow:
         self.worst = max(self.worst, largest_residual(budgets))
         budgets.flags.writeable = False
         state = replace(state, budgets=budgets)
-        self.fastest = fastest_in_row(p, self._area, self._laws, sums, float(largest[RATE]), told.phi)
+        self.fastest_grain = float(largest[RATE])
+        slow = SLOW * p.nu / float(self._grains.d.mean()) if len(x) else 0.0
+        rates = rates_at_stations(p, self._area, self._laws, shape, sums, told, np.array(state.u), slow)
+        water = fastest_in_row(p, self._area, self._laws, sums, told.phi)
+        self.fastest = max(water, float(rates.max()), self.fastest_grain)
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, row.column.seed, dt, self.sampled[:, SHEAR])
         self._tell(state, sums, through, dt)
+        if self.fastest * self.scene.dt > STIFF:  # the next interval is a step
+            meet_within_step(shape, self.scene.dt, rates, sums, told)
         self._sample(state)
         return state
 

@@ -28,7 +28,8 @@ from ryusa.water.row_step import RowShape
 from ryusa.water.slice_sums import N_SUM
 
 BUOYED = N_SUM  # row of the sums: force of the slope of the surface on the grains along x [N]
-N_ROW_SUM = N_SUM + 1
+DRAG_U = N_SUM + 1  # drag over slip times the speed of the grains along x [N]
+N_ROW_SUM = N_SUM + 2
 N_SHARING = 3  # segments that share a grain
 
 

@@ -74,7 +74,7 @@ def reach(seed: int, segments: int) -> dict[str, Floats]:
         x, v, taken = engine.kinematics()
         state = grains.exchange(state, x, v, taken, time)
         t += time
-        steps = steps_resolved(grains.fastest, fixed.dt, column.interval, state.t, state.steps)
+        steps = steps_resolved(grains.fastest, fixed.dt, column.interval)
         if t > BEGIN:
             u, phi = state.u.mean(axis=0), grains.phi.mean(axis=0)
             through = float((state.content * state.u).sum(axis=1).mean())
