@@ -27,7 +27,7 @@ ANGLES = ("30 deg", "20 deg", "40 deg")  # settings, the first as shipped
 # Coefficient of each setting, by the rule of the registration.
 FITTED: Mapping[str, str] = {"30 deg": "0.5", "20 deg": "1", "40 deg": "1"}
 FIT = (
-    "fitted on 28 November 2026 with seeds 1 to 4, before any blind run: no coefficient of the box gives 38 deg "
+    "fitted on 28 November 2026, seeds 1 to 4, before any blind run: no coefficient of the box gives 38 deg "
     "at any friction angle (at most 34.3, 35.7 and 35.0 deg at 30, 20 and 40 deg), so that each is the "
     "smallest within one standard error of the nearest"
 )
