@@ -5,6 +5,11 @@ from typing import Any
 from ryusa.running.energy_terms import energy_lines
 
 _WORTH_SAYING = 0.05  # [s] of compiling
+_NOT_MEASURED = "not at all (no contact between two isolated grains)"
+_WAYS = {  # of impacts, by what the summary calls them, and what is to be said of each
+    "sticking": ("without sliding", ""),
+    "sliding": ("with sliding", ", where friction decides and not this number"),
+}
 
 
 def summary_lines(summary: dict[str, Any]) -> list[str]:
@@ -52,13 +57,14 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
         why += "; a clump hit off its centre has less effective mass, and rebounds less (design/0022)"
     if summary["restitution"].get("adhesion"):
         why += "; adhesion takes more from slow impacts (design/0024)"
-    slid = f"; with sliding {_measured(shear['sliding'])}, where friction decides and not this number"
-    if not any(one["n"] for one in shear["sliding"].values()):
-        slid = ""  # said of measured contacts only
+    seen = [
+        f"{way} {_measured(shear[name])}{note}"
+        for name, (way, note) in _WAYS.items()
+        if any(one["n"] for one in shear[name].values())
+    ]
     return [
         f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])}; {why}",
-        f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}"
-        f"{slid}",
+        f"tangential restitution: {_set(shear)}; measured {'; '.join(seen) or _NOT_MEASURED}",
     ]
 
 
@@ -115,7 +121,7 @@ def _measured(averages: dict[str, Any]) -> str:
         if one["n"]:
             error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
             parts.append(f"{one['mean']:.4f}{error} against {partner} grains ({one['n']} contacts)")
-    return ", ".join(parts) or "not at all (no contact between two isolated grains)"
+    return ", ".join(parts) or _NOT_MEASURED
 
 
 def _set(restitution: dict[str, Any]) -> str:
