@@ -76,3 +76,15 @@ def test_they_are_doubled_until_it_is_decided_or_as_many_as_allowed(tmp_path, mo
     assert n == [seeds.get(name, 4) for name in Three.parts]
     said = "its part got as many seeds again" in (tmp_path / "ledger.html").read_text(encoding="utf-8")
     assert said == bool(seeds)
+
+
+def test_a_part_whose_runs_would_take_too_long_gets_none(tmp_path) -> None:
+    """A calculation is taken to last 0.1 s, so that eight take 0.8 s and sixteen 1.6 s."""
+    ledger = make(Three(), None, Plan(seeds=(1, 2, 3, 4)), tmp_path, most_seeds=32, longest=1.0)
+    assert {name: len(own) for name, own in ledger.seeds.items()} == {"near": 8, "at_the_limit": 8}
+    assert [str(one.outcome) for one in ledger.entries] == ["holds", "undecided", "undecided"]
+    assert ledger.counts["runs_made"] + ledger.counts["runs_opened"] == 4 + 2 * 8
+    write(ledger, None)
+    plain = json.loads((tmp_path / "ledger.json").read_text(encoding="utf-8"))
+    assert set(plain["too_long_minutes"]) == {"near", "at_the_limit"}
+    assert "given no more seeds" in (tmp_path / "ledger.html").read_text(encoding="utf-8")

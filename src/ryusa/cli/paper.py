@@ -1,5 +1,6 @@
 """`ryusa paper`: repeat the whole study and say, claim by claim, what holds."""
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +14,7 @@ from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
+    MostMinutes,
     MostSeeds,
     On,
     carried_out,
@@ -61,6 +63,7 @@ def paper(
         ),
     ] = None,
     most_seeds: MostSeeds = 0,
+    most_minutes: MostMinutes = math.inf,
     json: Json = None,
     on: On = DEFAULT,
     jobs: Jobs = None,
@@ -82,7 +85,9 @@ def paper(
     if show:
         _list(plan, chosen, out, where.jobs, again)
         return
-    ledger, files = carried_out(PAPER, chosen, plan, out, json, where, again, quiet, most_seeds=most_seeds)
+    ledger, files = carried_out(
+        PAPER, chosen, plan, out, json, where, again, quiet, most_seeds=most_seeds, most_minutes=most_minutes
+    )
     _print(ledger)
     finish(ledger, files, out)
 

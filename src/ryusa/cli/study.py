@@ -1,5 +1,6 @@
 """`ryusa study`, and what it shares with `ryusa paper` and `ryusa validate`."""
 
+import math
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -59,6 +60,14 @@ MostSeeds = Annotated[
         "all; default: none.",
     ),
 ]  # fmt: skip
+MostMinutes = Annotated[
+    float,
+    typer.Option(
+        "--most-minutes", metavar="M", min=0.0,
+        help="Give a part more seeds only while all of its runs take no more than M core minutes by rule of "
+        "thumb; default: no limit.",
+    ),
+]  # fmt: skip
 Json = Annotated[
     Path | None,
     typer.Option("--json", metavar="FILE", help="Write the ledger here too; compressed if FILE ends in .xz."),
@@ -82,6 +91,7 @@ def study(
     full: Annotated[bool, typer.Option("--full", help="Full level.")] = False,
     seeds: Seeds = None,
     most_seeds: MostSeeds = 0,
+    most_minutes: MostMinutes = math.inf,
     json: Json = None,
     on: On = DEFAULT,
     jobs: Jobs = None,
@@ -103,7 +113,9 @@ def study(
     if show:
         list_runs(mine, plan, out, where.jobs, again)
         return
-    ledger, files = carried_out(mine, None, plan, out, json, where, again, quiet, most_seeds=most_seeds)
+    ledger, files = carried_out(
+        mine, None, plan, out, json, where, again, quiet, most_seeds=most_seeds, most_minutes=most_minutes
+    )
     _print(ledger)
     finish(ledger, files, out)
 
@@ -119,6 +131,7 @@ def carried_out(
     quiet: bool,
     earlier: Mapping[str, Any] | None = None,
     most_seeds: int = 0,
+    most_minutes: float = math.inf,
 ) -> "tuple[Ledger, tuple[Path, ...]]":
     """Run a study and write its ledger and page; an interrupt leaves with its own exit code.
 
@@ -132,8 +145,9 @@ def carried_out(
     try:
         progress = None if quiet else ProgressLines()
         made = make(
-            chosen, names, plan, out, where=where, again=again, progress=progress, most_seeds=most_seeds
-        )
+            chosen, names, plan, out, where=where, again=again, progress=progress, most_seeds=most_seeds,
+            longest=60.0 * most_minutes,
+        )  # fmt: skip
         ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
     except KeyboardInterrupt:

@@ -1,5 +1,6 @@
 """`ryusa validate`: compare ours with every reference, with each error as a number."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +13,7 @@ from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
+    MostMinutes,
     MostSeeds,
     On,
     Seeds,
@@ -53,6 +55,7 @@ def validate(
     ] = False,
     seeds: Seeds = None,
     most_seeds: MostSeeds = 0,
+    most_minutes: MostMinutes = math.inf,
     against: Annotated[
         Path | None,
         typer.Option(
@@ -89,7 +92,9 @@ def validate(
     if earlier is not None:
         refuse_other_study(earlier, VALIDATION.name)
         earlier = as_registered(VALIDATION, earlier)  # bands that are newer than it judge both
-    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, where, again, quiet, earlier, most_seeds)
+    ledger, files = carried_out(
+        VALIDATION, chosen, plan, out, json, where, again, quiet, earlier, most_seeds, most_minutes
+    )
     _print(ledger)
     finish(ledger, files, out)
     missed = [one.id for one in ledger.entries if one.outcome is Outcome.FAILS]

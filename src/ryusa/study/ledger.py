@@ -1,5 +1,6 @@
 """The ledger of a study: carry out its tasks, judge every part, keep the findings."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,6 +45,7 @@ class Ledger:
     traces : tracebacks of errors in the program, for the log.
     earlier : ledger of the same study to compare the verdicts with.
     seeds : of the parts that were given more than the plan has, by part.
+    too_long : parts that were given no more, since their runs would take longer than allowed [s], by part.
     """
 
     study: Study
@@ -58,6 +60,7 @@ class Ledger:
     traces: Mapping[str, str] = field(default_factory=dict[str, str])
     earlier: Mapping[str, Any] | None = None
     seeds: Mapping[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
+    too_long: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def log(self) -> str:
@@ -74,6 +77,7 @@ class Ledger:
             "indicative": self.plan.level is Level.QUICK or len(self.plan.seeds) == 1,
             "seeds": list(self.plan.seeds),
             "more_seeds": {name: list(own) for name, own in self.seeds.items()},
+            "too_long_minutes": {name: round(seconds / 60.0) for name, seconds in self.too_long.items()},
             **self.study.head(findings),
             "findings": [plain_entry(self.study, one, self.folder) for one in self.entries],
             "problems": dict(self.problems),
@@ -95,6 +99,7 @@ def make(
     again: bool = False,
     progress: StudyProgress | None = None,
     most_seeds: int = 0,
+    longest: float = math.inf,
 ) -> Ledger:
     """Carry out the tasks, judge every part, and write tables and pictures.
 
@@ -108,6 +113,7 @@ def make(
     again, progress : as in `carry_out`.
     most_seeds : while an interval over seeds leaves a finding undecided as shipped, its part gets as many
         seeds again, as long as that makes no more than these.
+    longest : time that the runs of a part may take with the seeds it is given, by rule of thumb [core s].
 
     Raises
     ------
@@ -123,12 +129,18 @@ def make(
     entries: dict[str, LedgerEntry] = {}
     results, own, left = TaskResults({}), plan, list(chosen)
     seeds: dict[str, tuple[int, ...]] = {}
+    too_long: dict[str, float] = {}
     while left:
         tasks: dict[str, Sequence[Task]] = {name: () for name in left}
         for name in left:
             done = results.found.get(name, {})
             with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
-                tasks[name] = [one for one in study.part(name).tasks(own) if one not in done]
+                wanted = study.part(name).tasks(own)
+                if own is not plan and (seconds := sum(one.cost() for one in wanted)) > longest:
+                    too_long[name] = seconds
+                tasks[name] = [one for one in wanted if one not in done]
+        left = [name for name in left if name not in too_long]
+        tasks = {name: tasks[name] for name in left}
         results.add(
             carry_out(tasks, study.part, folder / "runs", again=again, progress=progress, where=where)
         )
@@ -144,6 +156,7 @@ def make(
         study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
         counted(results, where.jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
         {what: one.words for what, one in faults.items()}, traces_of(results, faults), seeds=seeds,
+        too_long=too_long,
     )  # fmt: skip
 
 
