@@ -73,7 +73,7 @@ def test_more_memory_than_there_is_is_refused_before_the_first_grain(monkeypatch
 
 
 def test_the_memory_of_a_scene_made_by_hand_is_checked_too(scene, state, engine, tmp_path, monkeypatch):
-    monkeypatch.setattr(folder_module, "available_memory", lambda: 5e3)
+    monkeypatch.setattr(folder_module, "available_memory", lambda: 2e3)
     with pytest.raises(CaseError, match="Take fewer grains"):
         run_scene(scene, state, tmp_path / "run", frames=1e-3, stop=Stop(time=0.01), engine=engine)
     assert not (tmp_path / "run").exists()

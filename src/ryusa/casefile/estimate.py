@@ -24,16 +24,16 @@ BYTES_PER_FRAME = 272  # t, step, offset for ParaView and tally
 BYTES_OF_ROW = 8 * 4  # of a cell of a row of columns and frame: two speeds, water, concentration
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 # Memory, measured (design/lab/0008-memory-of-a-run.md) [B]:
-MEMORY_PER_RUN = 218_000_000  # Python, its packages and the compiled code
-MEMORY_PER_GRAIN = 680  # free or fixed: scene, state, Verlet list
-MEMORY_IN_COLUMN = 700  # of a grain on top, in a column of water
-MEMORY_PER_CONTACT = 200
-SNAPSHOT_PER_GRAIN = 60  # while a checkpoint is written
-SNAPSHOT_PER_CONTACT = 75
+MEMORY_PER_RUN = 219_000_000  # Python, its packages and the compiled code
+MEMORY_PER_GRAIN = 600  # scene, state, Verlet list, one frame; a checkpoint is written in less
+MEMORY_PER_FIXED = 350
+MEMORY_IN_COLUMN = 850  # of a grain on top, in a column of water
+MEMORY_PER_CONTACT = 100
+MEMORY_WITH_TIMING = 100  # of a contact on top, where contacts begin and end within steps
 WRITING = 2.1  # copies of a part while it is written: HDF5 in memory, and its bytes
 # A checkpoint on the disk [B]:
 CHECKPOINT_PER_GRAIN = 130
-CHECKPOINT_IN_COLUMN = 150  # of a grain on top, and in memory while it is written
+CHECKPOINT_IN_COLUMN = 150  # of a grain on top
 CHECKPOINT_PER_CONTACT = 96
 CHECKPOINT_WITH_ROLLING = 48  # of a contact on top, where there is rolling friction
 CHECKPOINT_WITH_TIMING = 8  # where contacts begin and end within steps
@@ -92,8 +92,7 @@ def bytes_per_grain(case: Case) -> int:
 
 def disk_needed(case: Case, derived: Derived) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_PER_FRAME + BYTES_OF_ROW * cells_of_row(case)
-    return frames_expected(case) * frame + BYTES_PER_RUN
+    return frames_expected(case) * (_frame(case, derived) + BYTES_PER_FRAME) + BYTES_PER_RUN
 
 
 def events_expected(case: Case, derived: Derived) -> int:
@@ -132,20 +131,21 @@ def contacts_expected(case: Case, derived: Derived) -> float:
     return SETTLED if case.water is None else IN_FLOW
 
 
-def memory_of_grains(n_grain: int, n_fixed: int, contacts: float, column: bool) -> tuple[float, float]:
-    """Bytes that grains take while running, and on top while their checkpoint is written.
+def memory_of_grains(
+    n_grain: int, n_fixed: int, contacts: float, timed: ContactTiming, column: bool
+) -> float:
+    """Bytes that grains take at rest, with one frame of them; within 5 % (design/lab/0008).
 
     Parameters
     ----------
     n_grain, n_fixed : free and fixed grains.
     contacts : per free grain [-].
-    column : in a column of water.
+    timed : timing of contacts.
+    column : whether they are in a column of water, or in a row of such.
     """
-    each, snapshot = MEMORY_PER_GRAIN, SNAPSHOT_PER_GRAIN
-    if column:
-        each, snapshot = each + MEMORY_IN_COLUMN, snapshot + CHECKPOINT_IN_COLUMN
-    running = (n_grain + n_fixed) * each + n_grain * contacts * MEMORY_PER_CONTACT
-    return running, n_grain * (snapshot + contacts * SNAPSHOT_PER_CONTACT)
+    each = MEMORY_PER_GRAIN + (MEMORY_IN_COLUMN if column else 0)
+    contact = MEMORY_PER_CONTACT + (MEMORY_WITH_TIMING if timed is ContactTiming.EXACT else 0)
+    return n_grain * (each + contacts * contact) + n_fixed * MEMORY_PER_FIXED
 
 
 def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
@@ -168,9 +168,13 @@ def held_back(case: Case, derived: Derived) -> float:
     """Bytes of frames and contacts that wait to be written, one frame at least."""
     seconds = seconds_needed(case, derived)
     interval = min(max(HELD_SHORTEST, HELD_SHARE * seconds), HELD_LONGEST)
-    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_OF_ROW * cells_of_row(case)
-    whole = frames_expected(case) * frame + disk_for_events(case, derived)
-    return max(frame, min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
+    whole = frames_expected(case) * _frame(case, derived) + disk_for_events(case, derived)
+    return max(_frame(case, derived), min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
+
+
+def _frame(case: Case, derived: Derived) -> int:
+    """Bytes of one frame."""
+    return derived.n_sphere * bytes_per_grain(case) + BYTES_OF_ROW * cells_of_row(case)
 
 
 def memory_needed(case: Case, derived: Derived) -> int:
@@ -178,13 +182,14 @@ def memory_needed(case: Case, derived: Derived) -> int:
 
     Notes
     -----
-    Beside program, grains and contacts it holds frames that wait to be written; and twice the part that is
-    being written, or the snapshot that goes to a checkpoint, which is written array by array.
+    Beside program, grains and contacts it holds frames that wait to be written, and copies of them while
+    they are.
     """
+    more = held_back(case, derived) - _frame(case, derived)  # one is in the memory of the grains
     column = case.water is not None and case.water.profile == "column"
-    contacts, held = contacts_expected(case, derived), held_back(case, derived)
-    running, snapshot = memory_of_grains(derived.n_sphere, derived.n_fixed, contacts, column)
-    return round(MEMORY_PER_RUN + running + held + max(WRITING * held, snapshot))
+    contacts = contacts_expected(case, derived)
+    grains = memory_of_grains(derived.n_sphere, derived.n_fixed, contacts, timing(case), column)
+    return round(MEMORY_PER_RUN + grains + (1.0 + WRITING) * more)
 
 
 def seconds_needed(case: Case, derived: Derived) -> float:

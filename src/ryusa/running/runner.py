@@ -211,8 +211,9 @@ def run_scene(
     """
     from ryusa.casefile.estimate import SETTLED, memory_of_grains
 
-    needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, bool(scene.column or scene.row))
-    refuse_if_too_large(sum(needed), scene.n_grain)
+    wet = bool(scene.column or scene.row)
+    needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, scene.contact.timing, wet)
+    refuse_if_too_large(needed, scene.n_grain)
     about = _CaseData({"title": "", "record": {"frames": frames, "settle": stop.settle}})
     options = _Options(threads, progress, overwrite, engine, checkpoint, resume, force)
     return _run_or_resume(lambda: (scene, state, ()), Path(folder), frames, stop, changes, options, about)
