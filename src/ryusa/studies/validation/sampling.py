@@ -107,6 +107,11 @@ SAMPLING: Mapping[str, Sampling] = {
         "while in motion the rate is correlated over 2 s, so 40 s leave a third of its scatter or less, but "
         "the flow may stop for longer than a run: several runs show how often",
     ),
+    "maurin": Sampling(
+        (1, 2), (0.0, 45.0, 75.0), "s",
+        "the water finds its speed in 15 s; the rate of a cell of 12 d by 12 d is then steady within some "
+        "per cent over 30 s, and 10 % is the limit",
+    ),
     "frey/walls": Sampling(
         (0, 2), (0.0, 0.0, 65.0), "s",
         "other distances between the walls, to bracket that of the measured rate",

@@ -38,6 +38,7 @@ NAMES = (
     "transport",
     "equilibrium",
     "frey",
+    "maurin",
 )
 
 
