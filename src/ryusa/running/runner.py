@@ -211,8 +211,7 @@ def run_scene(
     """
     from ryusa.casefile.estimate import SETTLED, memory_of_grains
 
-    wet = bool(scene.column or scene.row)
-    needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, scene.contact.timing, wet)
+    needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, scene.contact.timing, scene.coupled)
     refuse_if_too_large(needed, scene.n_grain)
     about = _CaseData({"title": "", "record": {"frames": frames, "settle": stop.settle}})
     options = _Options(threads, progress, overwrite, engine, checkpoint, resume, force)
