@@ -117,6 +117,7 @@ UNITS = {
         " N/m, m/N, N s/m, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
     ),
     "contact_step.contact_force": "bool, -, -, -, N, N, N, N -> N, N, N, N, N, N",
+    "bore.reflected_bore": "m/s, m, m/s2 -> m, m/s",
     "debris.equilibrium_concentration": "-, -, kg/m3, kg/m3 -> -",
     "debris.equilibrium_takahashi": "-, -, kg/m3, kg/m3, - -> -",
     "debris.discharge_over_bed": "m2/s, -, - -> m2/s",

@@ -11,6 +11,7 @@ from tests.measure.test_walls import pushed
 
 from ryusa.errors import ResultsError
 from ryusa.figures.loads import loads as drawn
+from ryusa.measure import structures
 from ryusa.measure.loads import loads, running_mean
 from ryusa.model.row import RowDam
 
@@ -85,12 +86,12 @@ def test_grains_turn_the_dam_about_its_toe(monkeypatch: pytest.MonkeyPatch) -> N
     run, force, place = ponded(0.0, 0.0), np.array([2.0, 0.0, -3.0]), np.array([0.141, 0.0, 0.003])
     about = np.array([0.05, 0.0, -0.02])
     of = SimpleNamespace(
-        names=("floor", "weir"), axis_point=np.array([[0.0] * 3, about]),
+        names=("floor", "weir"), untouched=(), axis_point=np.array([[0.0] * 3, about]),
         force=np.broadcast_to([np.zeros(3), force], (10, 2, 3)),
         torque=np.broadcast_to([np.zeros(3), np.cross(place - about, force)], (10, 2, 3)),
     )  # fmt: skip
-    run.scene = SimpleNamespace(walls=of)
-    monkeypatch.setitem(loads.__globals__, "forces_of_frames", lambda *_: of)
+    run.scene = SimpleNamespace(walls=of, n_grain=0)
+    monkeypatch.setattr(structures, "forces_of_frames", lambda *_: of)
     found = loads(run)
     turn = np.cross(place - np.array([TOE, 0.0, 0.0]), force)[1]
     assert found.grains[:, 0] == pytest.approx(np.tile([2.0, -3.0, turn], (10, 1)))
@@ -102,6 +103,7 @@ def test_grains_turn_the_dam_about_its_toe(monkeypatch: pytest.MonkeyPatch) -> N
 def test_frames_are_those_of_the_water_though_the_account_is_of_a_step_earlier() -> None:
     run, weir = ponded(0.003, 0.0), pushed({"weir": 0.5})
     run.scene, run.walls, run.wall_travel = weir.scene, weir.walls[:11], weir.wall_travel[:11]
+    run.scene.n_grain = 0
     run.tally = {"t": np.maximum(T - 1e-4, 0.0)}
     found = loads(run, begin=0.1, end=0.8)
     assert found.t == pytest.approx(0.1 * np.arange(1, 8) + 0.05)

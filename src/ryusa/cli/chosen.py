@@ -142,6 +142,13 @@ def time(name: str, value: Any, _results: "Results") -> float:
     return in_unit(value, "s", name)
 
 
+def window(name: str, value: Any, _results: "Results") -> float:
+    """Length of a window or of an average with its unit [s]."""
+    found = in_unit(value, "s", name)
+    within(name, found, 1.0e-9, 1.0e9)
+    return found
+
+
 def length(name: str, value: Any, _results: "Results") -> float:
     """A length with its unit [m]."""
     return in_unit(value, "m", name)

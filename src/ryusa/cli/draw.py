@@ -42,6 +42,7 @@ CHECKS: dict[str, chosen.Check] = {
     "--quantity": chosen.one_of(QUANTITIES),
     "--reach": chosen.reach,
     "--side": chosen.one_of(SIDES),
+    "--window": chosen.window,
     "--wall": lambda _name, value, _results: value,
 }
 
@@ -77,8 +78,15 @@ Quantity = Annotated[
 Wall = Annotated[
     list[str] | None,
     typer.Option(
-        help=f"{taking('wall', PICTURES)}: only the wall of this name; may be repeated. Default all that "
-        "grains touched, of more than eight those with the largest forces."
+        help=f"{taking('wall', PICTURES)}: only the wall or dam of this name; may be repeated. Default all "
+        "that are pushed, of more than eight, for loads four, those with the largest forces."
+    ),
+]
+Window = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('window', PICTURES)}: time over which the largest load is averaged; default that "
+        "between two frames."
     ),
 ]
 
@@ -144,6 +152,7 @@ def draw(
     reach: Reach = None,
     quantity: Quantity = None,
     wall: Wall = None,
+    window: Window = None,
 ) -> None:
     """Draw pictures of a run, and write the numbers in each as CSV beside it.
 

@@ -12,7 +12,7 @@ import typer
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import chosen
 from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
-from ryusa.cli.options import in_unit, open_run, within, write_rows
+from ryusa.cli.options import open_run, write_rows
 from ryusa.errors import CaseError, ResultsError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ CHECKS: dict[str, chosen.Check] = {
     "--settle": chosen.time,
     "--side": chosen.one_of(SIDES),
     "--threshold": chosen.length,
-    "--window": lambda name, value, _results: _window(name, value),
+    "--window": chosen.window,
 }
 
 
@@ -260,9 +260,3 @@ def _as_json(name: str, runs: Sequence[Path], rows: list[dict[str, object]], rem
         indent=1,
         ensure_ascii=False,
     )
-
-
-def _window(name: str, value: str) -> float:
-    found = in_unit(value, "s", name)
-    within(name, found, 1.0e-9, 1.0e9)
-    return found

@@ -118,8 +118,8 @@ def forces_of_frames(run: Run, kept: slice) -> WallForces:
         0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None, Averages("walls", tuple(items)),
     )  # fmt: skip
     notes = _notes(found, now.moving().tolist())
-    if run.row is not None and run.row.row.dams:
-        notes = (*notes, "the water is not in them: `ryusa measure RUN loads` has both, of dams")
+    if run.row is not None:
+        notes = (*notes, "the water is not in them: `ryusa measure RUN loads` has both, of dams and meshes")
     return replace(found, averages=replace(found.averages, notes=notes))
 
 

@@ -29,7 +29,13 @@ _OWN = ("run", "next")  # rows that a page has no use for: its title, and a comm
 _LINES = 400  # of the case file that are shown
 _SEGMENTS = 24  # of a row that a table on the page lists
 _OVER_TIME = "x_t"  # numbers over distance and time are drawn, and no table to be read
-_PLAIN = ("walls", "traffic", "row", "dams", "open")  # needs of measures that are seen in the scene of a run
+_PLAIN = (
+    "walls",
+    "traffic",
+    "row",
+    "structures",
+    "open",
+)  # needs of measures that are seen in the scene of a run
 
 
 @dataclass(frozen=True)
@@ -123,7 +129,8 @@ def _had(results: Results) -> set[str]:
     there = {
         "walls": scene.walls is not None and bool(scene.n_grain),
         "traffic": scene.traffic is not None,
-        "dams": row is not None and not all(dam.porous for dam in row.row.dams),
+        "structures": row is not None
+        and (bool(results.case.get("walls")) or not all(dam.porous for dam in row.row.dams)),
         "row": row is not None,
         "open": row is None or not row.row.periodic,
     }

@@ -32,9 +32,11 @@ NEEDS: dict[str, tuple[Callable[["Case"], bool], str]] = {
         "water.profile = 'column'",
     ),
     "row": (lambda case: case.water is not None and case.water.row is not None, "[water.row]"),
-    "dams": (
-        lambda case: case.water is not None and case.water.row is not None and bool(case.water.row.dams),
-        "[[water.row.dams]]",
+    "structures": (
+        lambda case: (
+            case.water is not None and case.water.row is not None and bool(case.water.row.dams or case.walls)
+        ),
+        "[[water.row.dams]] or [[walls]]",
     ),
     "forces": (lambda case: case.record.forces, "record.forces = true"),
     "walls": (lambda case: bool(case.walls) or stream(case), "[[walls]], or builder 'stream'"),

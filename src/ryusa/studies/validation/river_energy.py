@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.bore import reflected_bore
 from ryusa.laws.families import BedKind, Mixing, SurfaceRule
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.model.scene import Floats
 from ryusa.studies.validation import river_bands as bands
-from ryusa.studies.validation.river_impact import ALONE, against_a_wall, reflected_bore
+from ryusa.studies.validation.river_impact import ALONE, against_a_wall
 from ryusa.study import Finding, Found, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import advance_row, row_at_rest

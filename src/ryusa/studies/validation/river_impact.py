@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import root_scalar
 
 from ryusa.cases import case_path
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.bore import reflected_bore
 from ryusa.laws.families import SurfaceRule
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import long_section, row_of
@@ -30,28 +30,6 @@ REACH, FLOW = (0.5, 0.65), 0.15  # where the flow is measured [m], and for how l
 ARRIVED = 0.4  # volume per area with which the grains have arrived there, in diameters
 LATER, LONG = 0.05, 0.25  # when after the impact the mean of the force begins, and how long it is [s]
 ALONE = (0.03, 1.5)  # depth [m] and speed [m/s] of the water alone
-
-
-def reflected_bore(u: float, h: float, g: float) -> tuple[float, float]:
-    """Depth behind the bore that a wall reflects [m], and the speed with which it goes upstream [m/s].
-
-    Parameters
-    ----------
-    u, h : speed [m/s] and depth [m] of the flow that comes.
-    g : gravity [m/s2].
-
-    Notes
-    -----
-    One layer of one fluid with hydrostatic pressure on a level bottom without friction: volume h (u + a) =
-    a h_r, momentum g (h_r**2 - h**2)/2 = h u (u + a). So (r**2 - 1)(r - 1) = 2 Fr**2 r with r = h_r/h, and a
-    dam bears rho g h_r**2/2 per width, r**2 times what still fluid of the depth h would give. The form that
-    Armanini, Larcher & Odorizzi 2011 give for the reflection of debris flows, derived here.
-    """
-    froude_2 = u * u / (g * h)
-    r = root_scalar(
-        lambda r: (r * r - 1.0) * (r - 1.0) - 2.0 * froude_2 * r, bracket=(1.0, 3.0 + 2.0 * froude_2)
-    ).root
-    return r * h, u / (r - 1.0)
 
 
 def against_a_wall() -> tuple[ColumnRow, RowState]:
