@@ -92,7 +92,7 @@ def test_water_alone_has_one_run_and_an_answer_only_where_it_rests(weir):
     found = answered([weir])
     assert "Nothing is random in water alone" in found.verdict
     assert not found.supported and "not steady" in found.sentences[0].sure
-    assert found.sentences[0].before == "The water stands "
+    assert found.sentences[0].before == "Upstream of “weir” the water is "
 
 
 def test_what_is_not_covered_follows_from_the_case(heaps, weir):

@@ -59,6 +59,8 @@ def answer(runs: Sequence[Results], question: CaseQuestion, begin: float | None 
         except RyusaError as error:
             reasons.append(f"{measure}: {error}")
             continue
+        if not all(found):
+            reasons.append(f"{measure}: no samples")
         if {one.sentence for one in found[0]} & {one.sentence for one in columns}:
             continue  # the same by another measure, such as the slope of a round heap by its section
         for line in found[0]:

@@ -140,9 +140,10 @@ def _grains(first: Results) -> str:
     shape = str(keys.get("shape") or "sphere")
     rolling = (case.get("rolling") or {}).get("model")
     angle = math.degrees(float(contact.get("friction_angle") or 0.0))
+    fed = scene.traffic is not None and len(scene.traffic.feeds) > 0
     kind = "spheres" if shape == "sphere" else f"clumps ({shape})"
     words = [
-        f"{int(scene.heads.sum())} {kind} of {sizes}",
+        f"{'up to ' * fed}{int(scene.heads.sum())} {kind} of {sizes}",
         f"{float(keys.get('density') or math.nan):.4g} kg/m³", f"friction angle {angle:.3g}°",
         f"restitution {contact['restitution']:g}" if contact.get("restitution") is not None else "",
         f"rolling friction {'none' if rolling == 'none' else case['rolling']['coefficient']}",

@@ -56,9 +56,9 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("speed", "Grains advance at {}.", "m/s"),
     ),
     "levels": (
-        Headline("*: depth", "The water stands {} deep before {name}.", "mm", 1.0e3),
-        Headline("*: head", "It passes {name} with its level {} above the crest.", "mm", 1.0e3),
-        Headline("jump", "The flow turns from rapid to tranquil, in a jump, at x = {}.", "m"),
+        Headline("*: depth", "Upstream of {name} the water is {} deep.", "mm", 1.0e3),
+        Headline("*: head", "Its level there is {} above the crest.", "mm", 1.0e3),
+        Headline("jump", "A hydraulic jump stands at x = {}.", "m"),
     ),
     "loads": (
         Headline(
@@ -73,12 +73,12 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
     ),
     "walls": (Headline("*dam*: force x", "The grains push {name} downstream with {}.", "N"),),
     "filling": (
-        Headline("full from", "The bed before the dam is at its crest from the begin, t = {}.", "s"),
-        Headline("full at", "The bed before the dam reaches its crest at t = {}.", "s"),
-        Headline("below", "The bed before the dam does not reach its crest; it ends {} below.", "mm", 1.0e3),
+        Headline("full from", "The bed upstream of the dam is at crest level from the start, t = {}.", "s"),
+        Headline("full at", "The bed upstream of the dam reaches crest level at t = {}.", "s"),
+        Headline("below", "The bed upstream of the dam ends {} below crest level.", "mm", 1.0e3),
     ),
     "deposit": (
-        Headline("trapped_share", "{} of the grains that arrive stay.", "%", 100.0),
+        Headline("trapped_share", "{} of the arriving grains are trapped.", "%", 100.0),
         Headline(
             "last:stored_m2", "{} of grains per metre of width have been added, pores left out.",
             "m³",
@@ -86,8 +86,8 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("slope", "The deposit has a slope of {}.", "%", 100.0),
     ),
     "discharge": (
-        Headline("rate_out", "{} of grains leave.", "kg/s"),
-        Headline("rate_in", "{} of grains are fed.", "kg/s"),
+        Headline("rate_out", "Grains leave at {}.", "kg/s"),
+        Headline("rate_in", "Grains are fed at {}.", "kg/s"),
     ),
     "front": (
         Headline("last:front_m", "The front of the grains has come to x = {}.", "m"),
