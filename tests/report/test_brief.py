@@ -75,8 +75,10 @@ def test_seeds_are_pooled_with_an_interval(heaps):
     assert (low, high) == pytest.approx((expected.low, expected.high), abs=0.1 * half)
 
 
-def test_one_seed_has_no_interval_and_says_so(heaps):
+def test_one_seed_has_no_interval_and_says_so_and_so_does_a_trial(heaps, monkeypatch):
+    monkeypatch.setitem(heaps[0].provenance, "command", ["ryusa", "run", "heap.toml", "--try", "1s"])
     found = answered(heaps[:1])
+    assert found.verdict.startswith("A trial alone")
     assert not found.supported and "No interval: one run was made (seed 1)" in found.verdict
     assert not any("interval" in one.sure for one in found.sentences)
 

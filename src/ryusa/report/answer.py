@@ -84,6 +84,8 @@ def _verdict(runs: Sequence[Results], every: Sequence[Average], unsteady: bool, 
     unfinished = [one.folder.resolve().name for one in runs if not one.complete]
     if unfinished:
         said.append(f"Not complete: {', '.join(unfinished)}.")
+    if any("--try" in (one.provenance.get("command") or ()) for one in runs):
+        said.append("A trial alone: its times are shortened.")
     if unsteady:
         said.append(
             "No answer that the runs support: the first number still changes with time, so it describes this "

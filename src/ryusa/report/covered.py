@@ -11,6 +11,7 @@ from ryusa.report.contents import ExplainedValue
 from ryusa.results import Results
 
 _FINE = ("contact.parting", "contact.slip", "contact.damping_law", "contact.unloading")  # no client asks
+_DRIVEN = (": moves", ": presses with")  # of a wall
 Rows = list[tuple[str, str]]
 SOME, WALLS = 4, 6  # items of a list that are shown
 LONGEST = 230  # characters of a warning that are shown
@@ -21,13 +22,19 @@ def conditions(runs: Sequence[Results], values: Sequence[ExplainedValue]) -> Row
     first = runs[0]
     case, explained = first.case, {one.name: one for one in values}
     settle = float((case.get("record") or {}).get("settle") or 0.0)
-    left_out = f"; averages leave out the first {settle:g} s" if settle > 0.0 else ""
+    left_out = f"; averages leave out the first {settle:.3g} s" if settle > 0.0 else ""
     slope = float(case["motion"]["slope_angle"])
     seeds = ", ".join(str(one.provenance.get("seed")) for one in runs)
     rows = [
         ("Geometry", _geometry(first)),
         ("Dams", _some(_dam(one) for one in values if one.name.startswith("dam '"))),
         ("Walls", _some((_wall(one) for one in values if one.name.endswith(": size in x, y, z")), WALLS)),
+        (
+            "Driven by",
+            _some(
+                f"{one.name.replace(': ', ' ')} {one.shown}" for one in values if one.name.endswith(_DRIVEN)
+            ),
+        ),
         ("Grains", _grains(first)),
         ("Feeds", _some(_feed(one) for one in case.get("feeds") or [])),
         ("Water", _water(first, explained)),

@@ -46,8 +46,8 @@ DEGREES = 180.0 / math.pi
 _SLOPE = "The heap rests at a slope of {}."
 HEADLINES: dict[str, tuple[Headline, ...]] = {
     "transport": (
-        Headline("q_mass", "The bed load per metre of width is {}.", "kg/s/m"),
-        Headline("layer_thickness", "Nine tenths of it move in a layer {} thick.", "mm", 1.0e3),
+        Headline("q_mass", "The transport of grains per metre of width is {}.", "kg/s/m"),
+        Headline("layer_thickness", "Nine tenths of it takes place in a layer {} thick.", "mm", 1.0e3),
         Headline("tau_star", "The Shields number of the water at the bed is {}.", "-"),
     ),
     "saltation": (
