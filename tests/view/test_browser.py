@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from ryusa.report.brief import brief_page, write_pdf
 from ryusa.report.page import report_page
 from ryusa.view.page import view_page
 
@@ -237,3 +238,23 @@ def test_a_report_of_two_runs_plays_both(opened, three, saltation):
     assert page.locator("figure img").count() >= 4
     broken = "[...document.querySelectorAll('figure img')].filter((one) => !one.naturalWidth).length"
     assert page.evaluate(broken) == 0
+
+
+def test_a_brief_prints_on_one_sheet_however_much_it_has_to_say(browser, saltation, folder, monkeypatch):
+    for loaded in (False, True):
+        if loaded:
+            monkeypatch.setitem(saltation.case, "title", "A title of many words " * 12)
+            warnings = [f"{'this warning is long ' * 20} {'abcdefgh'[k]}" for k in range(8)]
+            monkeypatch.setitem(saltation.summary, "warnings", warnings)
+        text = brief_page([saltation])
+        (folder / "brief.html").write_text(text, encoding="utf-8")
+        assert write_pdf(text, folder / "brief.pdf") == 1
+        page = browser.new_page()
+        page.emulate_media(media="print")
+        page.goto((folder / "brief.html").as_uri())
+        fits = (
+            "(() => { const m = document.querySelector('main'); return m.scrollHeight <= m.clientHeight; })()"
+        )
+        assert page.evaluate(fits)
+        assert page.evaluate("document.querySelector('figure img').naturalWidth") > 0
+        page.close()

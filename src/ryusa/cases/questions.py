@@ -13,12 +13,16 @@ class CaseQuestion:
     cases : packaged cases that answer it, the nearest first; none where another command or nothing does.
     commands : what to type after `ryusa run`, in order.
     answer : what comes out, and what it does not cover.
+    measures : those whose numbers answer it on the page of `ryusa report --brief`, the most telling first.
+    pictures : those that show it there; the first that a run allows is taken.
     """
 
     asked: str
     cases: tuple[str, ...]
     commands: tuple[str, ...]
     answer: str
+    measures: tuple[str, ...] = ()
+    pictures: tuple[str, ...] = ()
 
 
 QUESTIONS = (
@@ -26,36 +30,43 @@ QUESTIONS = (
         "How much bed load does my reach carry?", ("bedload_3d", "even_bed", "movable_bed", "saltation"),
         ("ryusa measure RUN transport", "ryusa sweep CASE --seeds 4"),
         "kg/s per metre of width with its error, beside Meyer-Peter & Müller and Wong & Parker",
+        ("transport", "saltation"), ("transport", "tracks"),
     ),
     CaseQuestion(
         "And in a steep or violent flow?", ("sheet_flow", "dense_3d", "dense_plane"),
         ("ryusa measure RUN transport", "ryusa measure RUN profile"),
         "rate, layer that moves, profiles of velocity and concentration",
+        ("transport",), ("transport", "profile"),
     ),
     CaseQuestion(
         "How does a reach change in a flood?", ("river", "fed_river"),
         ("ryusa draw RUN long_section", "ryusa measure RUN discharge"),
         "bed and water along the reach over time; the water is hydrostatic, so no bed forms",
+        ("discharge", "deposit"), ("long_section",),
     ),
     CaseQuestion(
         "What does a weir or a flume with a feeder do?", ("weir", "flume"),
         ("ryusa draw RUN x_t", "ryusa measure RUN discharge", "ryusa measure RUN loads"),
         "jump, ponded depth, grains in and out, force on the weir with the water in it",
+        ("levels", "loads", "discharge"), ("long_section", "discharge", "grains"),
     ),
     CaseQuestion(
         "Will this dam hold, and when is it full?", ("sabo_dam", "dam"),
         ("ryusa measure RUN loads", "ryusa measure RUN deposit"),
         "force and moment of water and grains per metre, volume trapped; the water's impact is not in it",
+        ("loads", "walls", "filling", "deposit"), ("long_section", "walls", "grains"),
     ),
     CaseQuestion(
         "How far does a debris flow run, and what stays?",
         ("slope_break", "debris_flume", "debris_equilibrium"),
         ("ryusa measure RUN front", "ryusa measure RUN deposit"),
         "front over time, deposit, slope it rests at",
+        ("front", "deposit"), ("long_section", "front", "grains"),
     ),
     CaseQuestion(
         "What does a dam break or a delta do to loose ground?", ("dam_break", "delta"),
         ("ryusa draw RUN long_section", "ryusa measure RUN front"), "wave, erosion, front of the delta",
+        ("front", "deposit"), ("long_section", "front", "grains"),
     ),
     CaseQuestion(
         "How deep is the scour under a jet or at a pier?", (), (),
@@ -66,32 +77,38 @@ QUESTIONS = (
         ("poured_heap", "lifted_cylinder", "gravel_heap", "heap"),
         ("ryusa measure RUN cone", "ryusa calibrate STUDY.toml"),
         "slope of the heap with its error; friction and rolling friction from your own test",
+        ("cone", "surface"), ("cone", "surface"),
     ),
     CaseQuestion(
         "How fast does my hopper empty?", ("hopper",), ("ryusa measure RUN discharge",),
-        "kg/s through the outlet",
+        "kg/s through the outlet", ("discharge",), ("discharge", "grains"),
     ),
     CaseQuestion(
         "How far does a column or a slope collapse?", ("column_collapse", "channel_collapse"),
         ("ryusa measure RUN surface",), "run-out and shape of the deposit",
+        ("surface",), ("surface", "grains"),
     ),
     CaseQuestion(
         "What strength does my material have?", ("direct_shear", "shear_cell", "split_bottom"),
         ("ryusa measure RUN direct_shear", "ryusa measure RUN shear"),
         "friction over shear, dilation, profile",
+        ("direct_shear", "shear", "shear_zone"), ("direct_shear", "shear", "shear_zone"),
     ),
     CaseQuestion(
         "How do grains flow, mix and sort in a drum or mill?", ("drum", "mill"),
         ("ryusa measure RUN dynamic_angle", "ryusa measure RUN segregation"), "angle, torque, sorting",
+        ("dynamic_angle", "mill"), ("dynamic_angle", "mill"),
     ),
     CaseQuestion(
         "How do suspended or mixed grains settle?", ("settling_column", "graded_gravel"),
         ("ryusa measure RUN profile", "ryusa measure RUN segregation"), "hindered settling, sorting of a bed",
+        ("segregation",), ("profile", "grains"),
     ),
     CaseQuestion(
         "Does the program do what it says?", ("drop", "box"),
         ("ryusa measure RUN collisions", "ryusa validate --quick"),
         "restitution, contact time, energy account",
+        ("collisions",), ("contacts", "energy"),
     ),
     CaseQuestion(
         "How soft may I make the springs, and how many seeds do I need?", (),

@@ -97,7 +97,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
         complete=results.complete,
         rows=[row for row in inspection_rows(results) if row[0] not in _OWN],
     )
-    _explain(found, results)
+    explain_values(found, results)
     kind = str((results.case.get("build") or {}).get("kind", ""))
     had = _had(results)
     along_row = _measures_of_row(results, had)
@@ -112,7 +112,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
             or kind in entry.builders
             or (not kind and not entry.settled and not entry.measure)
         ):
-            _attempt(found, f"picture {entry.name}", lambda one=entry: _draw(found, results, one))
+            _attempt(found, f"picture {entry.name}", lambda one=entry: draw_picture(found, results, one))
     progress(0.5)
 
     def view() -> None:
@@ -161,7 +161,8 @@ def _attempt(found: RunContents, what: str, act: Callable[[], None]) -> None:
         found.missing.append((what, str(error)))
 
 
-def _explain(found: RunContents, results: Results) -> None:
+def explain_values(found: RunContents, results: Results) -> None:
+    """Add the text of the case, and its values as `ryusa check` prints them."""
     path = results.folder / schema.CASE_TOML
     if path.is_symlink() or not path.is_file():
         found.missing.append(("case", "the run was made from a script and holds no case file"))
@@ -265,7 +266,8 @@ def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
     return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at, *[some] * (every > 1)))
 
 
-def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
+def draw_picture(found: RunContents, results: Results, entry: PictureEntry) -> None:
+    """Draw a picture of a run and add it; an error says why there is none."""
     if entry.settled:
         _need_settled(results)
     if entry.measure:

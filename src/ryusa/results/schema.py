@@ -22,6 +22,7 @@ LOG = "log.txt"
 GRAINS = "grains.vtkhdf"  # the file to open in ParaView
 BED = "bed.vtkhdf"
 REPORT = "report.html"  # what ran and what it found, written by `ryusa report`
+BRIEF = "brief.html"  # one sheet about it for a client, written by `ryusa report --brief`
 VIEW = "view.html"  # the grains in motion, written by `ryusa view`
 FILM = "film.webp"  # the same as a film, written by `ryusa film`
 PICTURES = "pictures"  # folder of what `ryusa draw` wrote

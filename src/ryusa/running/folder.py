@@ -15,8 +15,8 @@ from ryusa.running.vtkhdf import POINTS
 
 _FILES = (
     schema.CASE_TOML, schema.CASE_JSON, schema.SUMMARY, schema.LOG, schema.GRAINS, schema.BED,
-    schema.CHECKPOINT, schema.CHECKPOINT_BEFORE, schema.VIEW, schema.FILM, schema.REPORT, schema.START,
-    schema.SIEVE, schema.REACH, schema.PROVENANCE,
+    schema.CHECKPOINT, schema.CHECKPOINT_BEFORE, schema.VIEW, schema.FILM, schema.REPORT, schema.BRIEF,
+    schema.START, schema.SIEVE, schema.REACH, schema.PROVENANCE,
 )  # fmt: skip
 
 

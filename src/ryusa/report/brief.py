@@ -1,0 +1,123 @@
+"""The page of `ryusa report --brief`: one sheet of A4 for a client."""
+
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from ryusa import __version__
+from ryusa.cases.questions import CaseQuestion
+from ryusa.catalogue import PICTURES
+from ryusa.errors import ResultsError, RyusaError
+from ryusa.report.answer import answer
+from ryusa.report.contents import Drawing, RunContents, draw_picture, explain_values
+from ryusa.report.covered import conditions, not_covered, rests_on
+from ryusa.report.question import question_of
+from ryusa.results import Results
+from ryusa.results.shown import _saved
+from ryusa.running.resume import changes_of
+from ryusa.study.html import template
+
+HERE = Path(__file__).parent
+BROWSERS = (
+    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge",
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+)  # fmt: skip
+PATIENCE = 120.0  # longest time for printing [s]
+
+
+def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float | None = None) -> str:
+    """Write the sheet about runs of one case.
+
+    Parameters
+    ----------
+    runs : one, or several that differ in their seed.
+    like : packaged case whose question is answered; default the one that the case resembles most.
+    begin : of the window of averages [s]; default that of each measure.
+
+    Raises
+    ------
+    ResultsError : no run, runs of different cases or of the same seed, or a run without a case.
+    CaseError : no packaged case is called `like`.
+    """
+    _check(runs)
+    question, _ = question_of(runs[0].case, like)
+    about = RunContents(
+        title=str(runs[0].case.get("title") or runs[0].folder.resolve().name), folder="", status="",
+        complete=True, rows=[],
+    )  # fmt: skip
+    explain_values(about, runs[0])
+    return template(HERE / "brief.html").render(
+        title=about.title,
+        question=question.asked,
+        answer=answer(runs, question, begin),
+        picture=_picture(about, runs[0], question),
+        of_run=runs[0].folder.resolve().name if len(runs) > 1 else "",
+        conditions=conditions(runs, about.values),
+        rests_on=rests_on(runs, about.values),
+        not_covered=not_covered(runs),
+        version=__version__,
+    )
+
+
+def _check(runs: Sequence[Results]) -> None:
+    if not runs:
+        raise ResultsError("a brief needs a run folder")
+    for one in runs:
+        if not one.case.get("build"):
+            raise ResultsError(f"{one.folder}: was run from a script and holds no case; a brief needs one")
+        differ = [change for change in changes_of(runs[0].case, one.case) if not change.startswith("seed ")]
+        if differ:
+            raise ResultsError(
+                f"{one.folder}: differs from {runs[0].folder} in more than its seed ({differ[0]}); a brief "
+                "is about runs of one case, `ryusa report` without --brief puts others side by side"
+            )
+    seeds = [one.provenance.get("seed") for one in runs]
+    if len({*seeds}) < len(seeds):
+        raise ResultsError(f"seeds {', '.join(map(str, seeds))}: runs of one seed are one run; give others")
+
+
+def _picture(about: RunContents, results: Results, question: CaseQuestion) -> Drawing | None:
+    """The first picture of the question that the run allows."""
+    entries = {one.name: one for one in PICTURES}
+    for name in question.pictures:
+        try:
+            draw_picture(about, results, entries[name])
+        except RyusaError:
+            continue
+        return about.drawings[-1]
+    return None
+
+
+def write_pdf(page: str, path: Path) -> int:
+    """Print a page by the Chromium, Chrome or Edge of this machine; returns how many sheets it takes.
+
+    Raises
+    ------
+    ResultsError : there is no such browser, it fails, or the file cannot be written.
+    """
+    browser = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if browser is None:
+        raise ResultsError(
+            f"{path}: a PDF is printed by Chromium, Google Chrome or Microsoft Edge, and none was found "
+            "(apt install chromium); or write an .html and print it from any browser"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
+        source.write_text(page, encoding="utf-8")
+        command = [
+            browser, "--headless", "--no-sandbox",  # root has none, and the page may run nothing
+            "--disable-gpu", "--no-pdf-header-footer",
+            f"--user-data-dir={folder}/profile", f"--print-to-pdf={printed}", source.as_uri(),
+        ]  # fmt: skip
+        try:
+            made = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
+            data = printed.read_bytes()
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise ResultsError(f"{path}: {browser} did not print the page ({error})") from None
+        if made.returncode:
+            raise ResultsError(f"{path}: {browser} did not print the page ({made.stderr.strip()[-200:]})")
+    _saved(data, path)
+    return len(re.findall(rb"/Type\s*/Page\b", data))
