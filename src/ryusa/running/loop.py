@@ -335,7 +335,8 @@ class Loop:
 
     def _record(self) -> None:
         state, tally = self.engine.state() if self.scene.forces else self.engine.grains(), self.engine.tally()
-        self.recorder.frame(state, tally, self._water, self.servo and self.servo.travel_at(self._t))
+        travel = self.servo and self.servo.travel_at(self._t)
+        self.recorder.frame(state, tally, self._water, travel, with_servos(self.scene, self.servo))
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):
             self.recorder.reached(self._step)  # the frame of the failure is recorded
