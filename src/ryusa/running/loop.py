@@ -320,8 +320,7 @@ class Loop:
             after = change.apply(self.scene)
             if self._water is not None:
                 finish_before(self.engine, self._water, self._step, after)
-            state = self.engine.state()
-            self.scene = after
+            state, self.scene = self.engine.state(), after
             self.engine.load(with_servos(self.scene, self.servo), state)
             self._collect_contacts()
             self._n_changed += 1
