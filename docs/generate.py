@@ -266,14 +266,22 @@ def _parameter(parameter: Any) -> str:
 
 
 def validation_table() -> str:
-    """Every comparison of the kept ledger of `ryusa validate`, changed verdicts, runs of each comparison."""
+    """Every comparison of the kept ledger of `ryusa validate`."""
+    from ryusa.studies.validation.study import counted, table
+
+    ledger = kept("validation")
+    return f"{counted(ledger)}\n\n{table(ledger)}\n"
+
+
+def validation_bands() -> str:
+    """Changed verdicts and bands of the kept ledger of `ryusa validate`, runs of each comparison."""
     from ryusa.studies.validation.sampling import CLOSED, sampling_table
-    from ryusa.studies.validation.study import VALIDATION, changes, counted, table
+    from ryusa.studies.validation.study import VALIDATION, changes
 
     ledger = kept("validation")
     closed = ", ".join(f"{name} ({why})" for name, why in CLOSED.items())
-    parts = [counted(ledger), table(ledger), *changes(ledger)]
-    parts += [
+    parts = [
+        *changes(ledger),
         "## Bands that were changed",
         CHANGED,
         changed_bands(VALIDATION, ledger),
@@ -312,6 +320,7 @@ def pages() -> dict[Path, str]:
         HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
         HERE / "paper.md": filled(with_tables(_between_markers(HERE / "paper.md", paper_table()))),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
+        HERE / "validation-bands.md": _between_markers(HERE / "validation-bands.md", validation_bands()),
         HERE / "case.schema.json": json_schema_text(),
         **ledger_summaries(),
     }

@@ -31,3 +31,26 @@ def test_new_without_a_name_lists_the_cases_by_question() -> None:
     assert "paper/fig19" in shown
     assert shown.index("How fast does my hopper empty?") < shown.index("hopper  ")
     assert max(map(len, shown.splitlines())) <= 120
+
+
+def test_words_of_the_trade_lead_to_cases() -> None:
+    from ryusa.cases.questions import OTHER_WORDS
+
+    assert set(OTHER_WORDS.values()) <= set(case_files()) and not set(OTHER_WORDS) & set(case_files())
+    for word, case in (("lid", "shear_cell"), ("shear box", "direct_shear"), ("Jack", "shear_cell")):
+        failed = CliRunner().invoke(app, ["new", word])
+        assert failed.exit_code != 0 and f"Did you mean '{case}'?" in failed.output
+
+
+def test_a_key_for_a_lid_is_answered_with_the_wall_that_is_one() -> None:
+    import pytest
+
+    from ryusa.casefile import read_text
+    from ryusa.cases import case_path
+    from ryusa.errors import CaseError
+
+    text = case_path("drop.toml").read_text(encoding="utf-8")
+    for key in ("lid", "jack"):
+        with pytest.raises(CaseError, match="servo = ") as caught:
+            read_text(f"{text}\n[{key}]\npressure = '1 kPa'\n")
+        assert "docs/lids.md" in str(caught.value)

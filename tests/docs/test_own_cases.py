@@ -1,4 +1,4 @@
-"""The cases of docs/cases-of-your-own.md are read, built and stepped as they stand."""
+"""The cases of docs/cases-of-your-own.md and its subject pages are read, built and stepped as they stand."""
 
 import re
 import tomllib
@@ -12,14 +12,26 @@ from ryusa import measure, run
 from ryusa.build import build
 from ryusa.casefile import derive, read
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.model.walls import ASKED
 
-PAGE = Path(__file__).parents[2] / "docs" / "cases-of-your-own.md"
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = (
+    "cases-of-your-own",
+    "feeds-and-exits",
+    "walls",
+    "lids",
+    "sieve-curves",
+    "clumps",
+    "adhesion",
+    "scenes-in-python",
+)
 REST = '[motion]\nrotation = "free"\nplane = true\n[stop]\ntime = "0.05 s"\n[record]\nframes = "1 ms"\n'
 
 
 @pytest.fixture
 def blocks() -> list[tuple[str, str]]:
-    return re.findall(r"```(\w+)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    text = "".join((DOCS / f"{page}.md").read_text(encoding="utf-8") for page in PAGES)
+    return re.findall(r"```(\w+)\n(.*?)```", text, re.DOTALL)
 
 
 def stepped(path: Path):
@@ -46,7 +58,8 @@ def test_the_table_case_runs(blocks, tmp_path):
     (tmp_path / "grains.csv").write_text(csv, encoding="utf-8")
     head = blocks[0][1].split("[rolling]")[0]
     path = tmp_path / "table.toml"
-    path.write_text(head + blocks[-1][1] + REST, encoding="utf-8")
+    (table,) = [text for _, text in blocks if 'kind = "table"' in text]
+    path.write_text(head + table + REST, encoding="utf-8")
     scene = stepped(path)
     assert (scene.n_grain, scene.n_fixed) == (1, 2)
 
@@ -109,7 +122,7 @@ def test_the_flume_with_a_weir_runs(blocks, tmp_path):
 
 
 def test_the_drum_of_arrays_is_built_and_its_grains_can_be_clumps(blocks):
-    (text,) = [text for kind, text in blocks if kind == "python" and "build.scene(" in text]
+    (text,) = [text for kind, text in blocks if kind == "python" and "drum_of_arrays" in text]
     made = {}
     exec(text.split("run = ")[0], made)
     scene, shape = made["scene"], made["shape"]
@@ -132,3 +145,12 @@ def test_grains_are_fed_and_trapped_in_a_column_of_water(blocks, tmp_path):
     assert (rows["way"] == -1).sum() >= 1
     assert results.summary["energy"]["residual"] < 1e-3
     assert results.summary["water"]["momentum_residual"] < 1e-9
+
+
+def test_the_lid_of_arrays_presses_on_the_area_of_the_sample(blocks):
+    (text,) = [text for kind, text in blocks if kind == "python" and "runs/lid" in text]
+    made = {}
+    exec(text.split("run = ")[0], made)
+    scene = made["scene"]
+    assert scene.n_grain == 400
+    assert scene.walls.servo[1, ASKED] == pytest.approx(400.0 * scene.period[0] * scene.period[1], rel=1e-9)

@@ -25,6 +25,7 @@ def found():
         z=Z, length=1e-3, crest=2e-3, phi=layers("phi", 0.6 * (Z < 6e-3)), v_x=layers("v_x", 10.0 * Z),
         mu=layers("mu", 0.3 + 20.0 * Z), shear_rate=np.full(len(Z), 10.0), inertial_number=0.01 + 10.0 * Z,
         weight=line, weight_along=0.4 * line, deviation=0.01, deviation_along=0.01,
+        **{f"fabric_{one}": layers(f"fabric_{one}", 0.0 * line) for one in ("xx", "zz", "xz")}, area=1e-4,
         averages=Averages("contact_stress", ()), **some, **shear,
     )  # fmt: skip
 

@@ -45,6 +45,14 @@ def test_energy_given_by_the_step_counts_as_created_too(scene):
     assert "gained 3 J that no force supplied" in str(fault)
 
 
+def test_what_a_step_gives_and_a_dashpot_takes_at_rest_under_a_load_is_no_fault(scene):
+    terms = [0.0] * N_TERM
+    terms[Term.STEP], terms[Term.DASH_N] = 3.0, 3.0
+    for kinetic, fails in ((1e-12, False), (1e-3, True)):
+        tally = replace(account(kinetic), terms=tuple(terms))
+        assert (energy_created(scene, moving(), tally) is not None) is fails
+
+
 @pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])
 def test_constant_or_decreasing_energy_and_round_off_at_rest_are_no_fault(scene, tally):
     assert energy_created(scene, moving(), tally) is None

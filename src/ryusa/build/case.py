@@ -23,6 +23,7 @@ from ryusa.build.passing_walls import refuse_passing_walls
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.row import row_of
 from ryusa.build.saltation import saltation
+from ryusa.build.servo import servo_notes
 from ryusa.build.stream import stream_bed, stream_walls
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, leaving_row, moving_with, with_feeds
@@ -159,9 +160,12 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     passed = refuse_passing_walls(case, scene)
     refuse_idle_servos(case, scene, state)
     pressed = refuse_crushing_servos(scene)
+    areas = servo_notes(
+        scene, {k: one.servo.pressure for k, one in enumerate(case.walls) if one.servo and one.servo.pressure}
+    )
     gone = refuse_grains_beyond_exits(scene, state)
     refuse_full_feeds(case, scene)
-    said = (*placement.notes, *passed, *pressed, *gone, *notes_without_effect(case), *notes_of(case))
+    said = (*placement.notes, *passed, *areas, *pressed, *gone, *notes_without_effect(case), *notes_of(case))
     return Built(scene, state, said)
 
 

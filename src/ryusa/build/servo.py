@@ -1,7 +1,7 @@
 """Walls that a servo presses on the grains: with what force, and how often it is corrected."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +9,8 @@ import numpy as np
 from ryusa.model import FaceKind, Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.contact_law import contact_time_of
+from ryusa.model.plane_section import SIDES, rim_of, section_area
+from ryusa.model.wall_shape import triangles_of
 from ryusa.model.walls import (
     ASKED,
     BOUND,
@@ -22,6 +24,9 @@ from ryusa.model.walls import (
     speed_of,
 )
 
+ROUND = 1.0e-4  # share by which the area of the polygon that stands for a disc may be too small
+ASIDE = 1.0e-6  # of the size of a wall, towards the grains
+
 
 @dataclass(frozen=True)
 class Servo:
@@ -33,7 +38,7 @@ class Servo:
     max_speed : along it, either way [m/s].
     max_travel : along it from the first place, either way [m].
     force : on the grains in this direction [N]; nan where a pressure is given.
-    pressure : force over the area of the wall seen along `towards` [Pa]; nan where a force is given.
+    pressure : force over the area with which the wall presses on the sample [Pa]; nan where a force is given.
     """
 
     towards: tuple[float, float, float]
@@ -57,35 +62,76 @@ def area_along(face: Floats, kind: Ints, towards: Floats) -> float:
     return float(np.abs(across @ towards).sum())
 
 
+def pressed_area(scene: Scene, wall: int, towards: Floats) -> tuple[float, float]:
+    """Area with which a wall presses on the sample, and the area of the sample, at t = 0 [m2].
+
+    Parameters
+    ----------
+    towards : unit vector in which it presses, shape (3,).
+
+    Returns
+    -------
+    area : of the wall seen along `towards`, of a closed body one side; without what lies beyond other walls
+        and planes, as they stand in the plane of the wall, or beyond one period.
+    sample : all that other walls, planes and periods bound there; inf where it is open.
+    """
+    walls = scene.walls
+    assert walls is not None
+    mine = walls.wall == wall
+    whole = area_along(walls.face[mine], walls.kind[mine], towards)
+    corners, owner = triangles_of(walls, SIDES)
+    rim, widest = rim_of(corners[owner == wall].reshape(-1, 3), towards)
+    whole = whole if whole <= (1.0 + ROUND) * widest else widest  # more: a body, or a plate of two faces
+    origin = rim.mean(axis=0) + ASIDE * float(np.ptp(rim)) * towards  # another wall may end where it begins
+    within = section_area(scene, origin, towards, 0.0, rim, without=wall)
+    sample = section_area(scene, origin, towards, 0.0, without=wall)
+    return within if within < (1.0 - ROUND) * whole else whole, sample
+
+
+def servo_notes(scene: Scene, pressures: Mapping[int, float]) -> tuple[str, ...]:
+    """On what area each pressure acts, [Pa] by number of the wall."""
+    walls, notes = scene.walls, list[str]()
+    for w, pressure in pressures.items():
+        assert walls is not None
+        row = walls.servo[w]
+        area, sample = pressed_area(scene, w, row[TOWARDS : TOWARDS + 3])
+        share = area / sample
+        if share > 1.0 - ROUND:
+            said = "the whole sample"
+        elif math.isinf(sample):
+            said = "its own, as the sample has open sides"
+        else:
+            said = f"{share:.1%} of the sample, in which the mean pressure is {share * pressure:.4g} Pa"
+        notes.append(
+            f"servo of '{walls.names[w]}': {pressure:.4g} Pa on {1.0e4 * area:.4g} cm2, {said}: "
+            f"{float(row[ASKED]):.4g} N"
+        )
+    return tuple(notes)
+
+
 def servo_interval(scene: Scene) -> int:
     """Steps from one correction to the next: those of a contact of a mean grain with a wall."""
     m, r = float(np.mean(scene.m + scene.m_added)), 0.5 * float(np.mean(scene.d))
     return max(round(contact_time_of(scene.contact, m, r, scene.contact.speed) / scene.dt), 1)
 
 
-def servo_rows(
-    scene: Scene, faces: Sequence[tuple[Floats, Ints]], servos: Sequence[Servo | None], motion: Floats
-) -> Floats:
-    """Numbers of the servos of all walls (model.walls), (n_wall, N_SERVO); no row where there is none.
-
-    Parameters
-    ----------
-    scene : its grains, contact law and step.
-    faces : numbers and kinds of the faces of each wall.
-    motion : of each wall beside its servo (model.walls), (n_wall, N_MOTION).
-    """
+def servo_rows(scene: Scene, servos: Sequence[Servo | None]) -> Floats:
+    """Numbers of the servos of the walls of a scene (model.walls), (n_wall, N_SERVO); no row without any."""
     rows = np.zeros((len(servos), N_SERVO))
     if not any(servos):
         return rows[:0]
     rows[:, INTERVAL] = servo_interval(scene)
-    for row, (face, kind), servo, own in zip(rows, faces, servos, motion, strict=True):
+    walls = scene.walls
+    assert walls is not None
+    for w, (row, servo) in enumerate(zip(rows, servos, strict=True)):
         if servo is None:
             continue
         towards = np.array(servo.towards) / np.linalg.norm(servo.towards)
-        area = area_along(face, kind, towards)
         row[TOWARDS : TOWARDS + 3] = towards
-        row[ASKED] = servo.force if math.isnan(servo.pressure) else servo.pressure * area
+        row[ASKED] = servo.force
+        if not math.isnan(servo.pressure):
+            row[ASKED] = servo.pressure * pressed_area(scene, w, towards)[0]
         row[MOST_SPEED], row[MOST_TRAVEL] = servo.max_speed, servo.max_travel
-        low, high = face_boxes(face, kind)
-        row[BOUND] = speed_of(own, low.min(axis=0), high.max(axis=0)) + servo.max_speed
+        low, high = face_boxes(walls.face[walls.wall == w], walls.kind[walls.wall == w])
+        row[BOUND] = speed_of(walls.motion[w], low.min(axis=0), high.max(axis=0)) + servo.max_speed
     return rows

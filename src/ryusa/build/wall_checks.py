@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build.change import change, replay
-from ryusa.build.servo import area_along
+from ryusa.build.servo import pressed_area
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.impact import STABLE
 from ryusa.casefile.traffic.values import (
@@ -129,8 +129,8 @@ def refuse_crushing_servos(scene: Scene) -> tuple[str, ...]:
     d = scene.d_mean
     laws = (scene.contact,) if scene.materials is None else scene.materials.contact
     for w in np.flatnonzero(walls.servo[:, ASKED] > 0.0):
-        row, mine = walls.servo[w], walls.wall == w
-        area = area_along(walls.face[mine], walls.kind[mine], row[TOWARDS : TOWARDS + 3])
+        row = walls.servo[w]
+        area, _ = pressed_area(scene, int(w), row[TOWARDS : TOWARDS + 3])
         bearing = min(max(area / (_SIDE_BY_SIDE * d * d), 1.0), len(scene.whole_grains()[0]))
         load = float(row[ASKED]) / bearing
         least = min(rest_overlap_of(law, 0.5 * d, load) for law in laws) / d

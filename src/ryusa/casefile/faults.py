@@ -33,6 +33,22 @@ _ELASTIC = (
     "unknown key; elastic spheres take contact.law = 'Hertz-Mindlin' with youngs_modulus and poisson_ratio, "
     "linear springs take contact.stiffness; see 'Normal force' and 'Elastic spheres' in docs/theory.md"
 )
+_LID = (
+    "unknown key; a lid, a jack or a piston is one of [[walls]] with a servo, such as servo = "
+    "{ direction = [0, 0, -1], pressure = '500 Pa', max_speed = '5 cm/s' }; see docs/lids.md"
+)
+_LIDS = {
+    "lid",
+    "lids",
+    "jack",
+    "jacks",
+    "piston",
+    "pistons",
+    "press",
+    "servo",
+    "shear_box",
+    "confining_pressure",
+}
 _AVERAGES = ("stop", "precision")  # the table whose keys are names of averages
 _OTHER_CONTACT_LAWS = {
     *("young", "young_modulus", "elastic_modulus", "shear_modulus", "youngs", "e"),
@@ -76,6 +92,8 @@ def _unknown_key(path: tuple[str | int, ...], data: dict[str, Any]) -> CaseError
     name = str(path[-1])
     if path[0] == "contact" and name.lower() in _OTHER_CONTACT_LAWS:
         return CaseError(dotted(path), None, _ELASTIC)
+    if name.lower() in _LIDS and path[0] not in ("walls", "build"):
+        return CaseError(dotted(path), None, _LID)
     if path[0] == "build" and len(path) == 2 and (others := builders_with(name)):
         kind = _value(data, ("build", "kind"))
         words = " and ".join(f"'{other}'" for other in others)

@@ -25,7 +25,8 @@ class ServoSection(Section):
     force: Annotated[Force, Field(gt=0)] | None = None
     """Force on the grains in this direction."""
     pressure: Annotated[Pressure, Field(gt=0)] | None = None
-    """In place of a force: force over the area of the wall, seen along the direction."""
+    """In place of a force: force over the area of the wall, seen along the direction, that lies within the
+    sample: one period, or between side walls. `ryusa check` says how large it is."""
     max_speed: Annotated[Speed, Field(gt=0)]
     """Largest speed along the direction, either way; a wall that touches no grain has it."""
     max_travel: PositiveLength | None = None

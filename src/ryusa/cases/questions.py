@@ -89,9 +89,10 @@ QUESTIONS = (
         ("surface",), ("surface", "grains"),
     ),
     CaseQuestion(
-        "What strength does my material have?", ("direct_shear", "shear_cell", "split_bottom"),
+        "What strength does my material have, in a shear box or under a lid?",
+        ("direct_shear", "shear_cell", "split_bottom"),
         ("ryusa measure RUN direct_shear", "ryusa measure RUN shear"),
-        "friction over shear, dilation, profile",
+        "friction over shear, dilation, profile; the lid is pressed by a servo and may be dragged",
         ("direct_shear", "shear", "shear_zone"), ("direct_shear", "shear", "shear_zone"),
     ),
     CaseQuestion(
@@ -116,3 +117,10 @@ QUESTIONS = (
         "the softest contacts that do not change the answer; a run that ends by the error of its averages",
     ),
 )  # fmt: skip
+
+OTHER_WORDS = {  # for what a case holds -> the case
+    **dict.fromkeys(("lid", "jack", "piston", "plate", "press", "servo", "annular_shear"), "shear_cell"),
+    **dict.fromkeys(("shear_box", "shearbox", "shear_test", "oedometer", "triaxial"), "direct_shear"),
+    **dict.fromkeys(("silo", "bin"), "hopper"),
+    **dict.fromkeys(("chute", "barrier"), "dam"),
+}

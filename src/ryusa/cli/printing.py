@@ -88,7 +88,7 @@ def _print_energy(found: "Energy") -> None:
 def _print_water_energy(found: "WaterEnergy") -> None:
     """Print every term of the account of the water in a row, as `_print_energy`."""
     changed = ("change", "changed", found.changed)
-    _print_account(found, changed, WATER_TERMS, "J/m", "changes - supplied + lost", "docs/river.md")
+    _print_account(found, changed, WATER_TERMS, "J/m", "changes - supplied + lost", "docs/along-a-row.md")
 
 
 def _print_account(

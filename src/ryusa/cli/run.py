@@ -75,9 +75,12 @@ def new(
         _list_by_question(kinds)
         return
     if kind not in kinds:
+        from ryusa.cases.questions import OTHER_WORDS
         from ryusa.spelling import nearest_word
 
-        raise CaseError("kind", kind, f"must be one of {', '.join(kinds)}", nearest_word(kind, list(kinds)))
+        near = nearest_word(kind.replace(" ", "_").replace("-", "_"), [*kinds, *OTHER_WORDS]) or ""
+        allowed = f"must be one of {', '.join(kinds)}"
+        raise CaseError("kind", kind, allowed, OTHER_WORDS.get(near, near) or None)
     if path is None:
         path = Path(f"{kind.rpartition('/')[2]}.toml")
     elif path.is_dir():

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.errors import ResultsError
+from ryusa.laws.families import Profile
 from ryusa.measure._run import Floats, Run, crest_of
-from ryusa.measure.profiles import Layers, _mean, _quotient
+from ryusa.measure.profiles import Layers, _mean, _quotient, area_of
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -19,6 +20,7 @@ from ryusa.model.wall_contacts import away_from_surfaces
 AXES = ((0, 0), (1, 1), (2, 2), (0, 2), (2, 0))  # components xx, yy, zz, xz, zx
 XX, YY, ZZ, XZ = range(4)
 FABRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+PLANE = ((0, 0), (2, 2), (0, 2))  # components of the fabric over height: in the plane of shear
 REACH = 4.0  # lengths of coarse graining beyond the outermost grains
 FLAT = 1.0e-6  # branch vectors flatter than this, in lengths of coarse graining, count as level
 BLOCK = 2_000  # contacts or grains taken at once
@@ -42,9 +44,14 @@ class ContactStress(Averaged):
     mu : abs(xz)/p [-].
     shear_rate : dv_x/dz [1/s], shape (n_layer,).
     inertial_number : abs(shear_rate) d sqrt(rho_s/p) [-], shape (n_layer,).
-    weight, weight_along : weight of the grains above less what fixed grains and planes above carry, normal to
-        the bed and along it [Pa], shape (n_layer,); in a steady dry flow equal to zz and -xz.
-    deviation, deviation_along : largest difference from these over the whole weight [-]; nan under water.
+    fabric_xx, fabric_zz, fabric_xz : mean of n_a n_b over the contacts of free grains at that height [-];
+        1/3, 1/3 and 0 where their normals have no preferred direction.
+    weight, weight_along : weight of the grains above less what fixed grains, planes and walls above carry,
+        normal to the bed and along it [Pa], shape (n_layer,); a lid adds its force. In a steady dry flow
+        equal to zz and -xz.
+    deviation, deviation_along : largest difference from these over the whole weight, or over the largest load
+        where a lid makes it more [-]; nan under water.
+    area : by which the sums are divided [m2].
     averages : force of fixed grains, planes and walls on the grains, per area, normal to the bed and along
         it; fabric of the contacts of free grains.
     """
@@ -65,10 +72,14 @@ class ContactStress(Averaged):
     mu: Layers
     shear_rate: Floats
     inertial_number: Floats
+    fabric_xx: Layers
+    fabric_zz: Layers
+    fabric_xz: Layers
     weight: Floats
     weight_along: Floats
     deviation: float
     deviation_along: float
+    area: float
     averages: Averages
 
     def rows(self) -> list[dict[str, object]]:
@@ -77,6 +88,7 @@ class ContactStress(Averaged):
             ("phi", self.phi), ("v_x_m_per_s", self.v_x), ("xx_Pa", self.xx), ("yy_Pa", self.yy),
             ("zz_Pa", self.zz), ("xz_Pa", self.xz), ("zx_Pa", self.zx), ("contact_zz_Pa", self.contact_zz),
             ("contact_xz_Pa", self.contact_xz), ("p_Pa", self.p), ("mu", self.mu),
+            *((f"fabric_{one}", getattr(self, f"fabric_{one}")) for one in ("xx", "zz", "xz")),
         )  # fmt: skip
         return [
             dict[str, object](z_m=float(z))
@@ -102,7 +114,8 @@ def contact_stress(
 
     Parameters
     ----------
-    run : a run folder, periodic along x or in space, whose case has record.forces = true.
+    run : a run folder, periodic along x or in space, with record.forces = true; in Python
+        `ryusa.run_scene(..., forces=True)`.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer : length of the coarse graining in mean diameters: standard deviation of its Gaussian and distance
         of the heights.
@@ -119,10 +132,11 @@ def contact_stress(
     height over the window (Goldhirsch 2010, Granular Matter 12, 239; at the bed Weinhart et al. 2012,
     Granular Matter 14, 289). Summed over all heights the first part is the Love-Weber stress. The stress on a
     plane normal to z is exactly the weight above, less the forces of fixed grains and planes above, where the
-    flow is steady and dry. Forces are those of the step before the frame. In space and open along x, as
-    between walls, the area is that of the grains seen from above: the hull of their centres, wider by the
-    mean radius. The fabric tensor is the mean of n_a n_b over the contacts of free grains with each other
-    (Satake 1982): its trace is 1.
+    flow is steady and dry. Forces are those of the step before the frame. The area is that of a period, or
+    within upright walls and planes; else, in space and open along x, that of the grains seen from above: the
+    hull of their centres, wider by the mean radius. The fabric tensor is the mean of n_a n_b over the
+    contacts of free grains with each other (Satake 1982), at a height weighted as their stress is: its trace
+    is 1.
     """
     # One function: half of it is what it returns
     open_ = not math.isfinite(run.scene.period[0]) and not run.scene.plane_case
@@ -130,7 +144,7 @@ def contact_stress(
     length = layer * float(scene.d.mean())
     z = _heights(run, first, last, scene, length)
     frames = [_frame(run, k, z, length) for k in range(first, last)]
-    *sums, fabric = (np.array(one) for one in zip(*frames, strict=True))
+    *sums, directions, fabric = (np.array(one) for one in zip(*frames, strict=True))
     contact, moved, weights, bed = (one / area for one in sums)
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
@@ -142,8 +156,9 @@ def contact_stress(
     inertial = np.abs(shear) * d * np.sqrt(density / np.where(p.value > 0.0, p.value, np.nan))
     above = weights.mean(axis=0)
     stress = {name: _mean(name, "Pa", whole[:, c]) for c, name in enumerate(("xx", "yy", "zz", "xz", "zx"))}
-    weight = float(scene.m.sum() * np.abs(scene.gravity[2]) / area)
-    total = math.nan if run.case.get("water") or weight == 0.0 else weight
+    wet = bool(run.case.get("water")) or scene.water.profile != Profile.NONE
+    load = max(float(scene.m.sum() * np.abs(scene.gravity[2]) / area), float(np.abs(above[1]).max()))
+    total = math.nan if wet or load == 0.0 else load
     off = float(np.abs(stress["zz"].value - above[1]).max()) / total
     off_along = float(np.abs(stress["xz"].value + above[0]).max()) / total
     window = float(t[0]), float(t[-1])
@@ -160,10 +175,15 @@ def contact_stress(
         mu=_quotient("mu", "-", sign * whole[:, XZ], pressure),
         shear_rate=shear,
         inertial_number=inertial,
+        **{
+            f"fabric_{name}": _quotient(f"fabric_{name}", "-", directions[:, 1 + c], directions[:, 0])
+            for c, name in enumerate(("xx", "zz", "xz"))
+        },
         weight=above[1],
         weight_along=above[0],
         deviation=off,
         deviation_along=off_along,
+        area=area,
         averages=Averages(
             "contact_stress",
             (
@@ -176,14 +196,18 @@ def contact_stress(
             ),
             (
                 *_balance(scene, area, off, off_along),
-                f"coarse graining: Gaussian of standard deviation {length:.3g} m, mean of {len(t)} frames",
+                f"area {area:.4g} m2; coarse graining: Gaussian of standard deviation {length:.3g} m, mean "
+                f"of {len(t)} frames",
             ),
         ),
     )
 
 
 def _plan(run: Run, first: int, last: int, scene: Scene) -> float:
-    """Area of the grains seen from above, mean of a window [m2]: the hull of centres and a radius more."""
+    """Area within upright walls, or else of the grains seen from above, mean of a window [m2]."""
+    within = area_of(run, first, scene, 1)
+    if math.isfinite(within):
+        return within
     from scipy.spatial import ConvexHull, QhullError
 
     r, found = 0.5 * float(scene.d.mean()), list[float]()
@@ -229,16 +253,16 @@ def _balance(scene: Scene, area: float, off: float, off_along: float) -> tuple[s
         f"weight of the grains per area: {-weight[2]:.4g} Pa normal to the bed, {weight[0]:.4g} Pa along it"
     )
     if math.isnan(off):
-        why = "the grains have no weight" if weight[2] == 0.0 else "water carries part of the weight"
+        why = "the grains carry nothing" if weight[2] == 0.0 else "water carries part of the weight"
         return (said, f"no balance of momentum: {why}")
     return (
         said,
-        f"balance of momentum: zz differs from the weight above by at most {off:.2%} of the whole weight, "
+        f"balance of momentum: zz differs from the weight above by at most {off:.2%} of the whole load, "
         f"xz by {off_along:.2%}",
     )
 
 
-def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, ...]:
     """Sums of one frame over heights z of the scene [m], times the area.
 
     Returns
@@ -247,6 +271,7 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
     moved : G times mass, momentum and its flux, (9, n_layer) [kg/m], [kg/s], [N].
     weights : along the bed and normal to it, less what fixed grains and planes carry above, (2, n_layer) [N].
     bed : force of fixed grains, planes and walls on the grains [N], (3,).
+    directions : G along contacts of free grains, alone and times n_x n_x, n_z n_z and n_x n_z, (4, n_layer).
     fabric : mean of n_a n_b of the contacts of free grains, xx, yy, zz, xy, xz, yz [-], (6,).
     """
     from scipy.special import ndtr
@@ -259,12 +284,15 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
     before = float(run.frames.t[k]) - scene.dt
     branch, tip, bound = _branches(x, forces["i"], forces["j"], scene, before)
     contact, moved, weights = np.zeros((5, len(z))), np.zeros((9, len(z))), np.zeros((2, len(z)))
+    directions, n = np.zeros((4, len(z))), branch / np.linalg.norm(branch, axis=1)[:, None]
     for a in range(0, len(f), BLOCK):
         one = slice(a, a + BLOCK)
         line = _line(z, x[forces["i"][one], 2], branch[one, 2], length)
         for c, (p, q) in enumerate(AXES):
             contact[c] += (f[one, p] * branch[one, q]) @ line
-        held = bound[one]
+        held, free = bound[one], n[one] * ~bound[one, None]
+        for c, weight in enumerate((~held * 1.0, *(free[:, p] * free[:, q] for p, q in PLANE))):
+            directions[c] += weight @ line
         share = ndtr((tip[one][held, 2, None] - z) / length)
         weights += np.array([f[one][held, 0] @ share, -f[one][held, 2] @ share])
     for a in range(0, len(x), BLOCK):
@@ -276,9 +304,9 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, Floats, 
         moved += np.stack([m, *(m * v[one].T), *(m * np.stack(flux))]) @ kernel
         share = m @ ndtr(off)
         weights += np.array([scene.gravity[0] * share, -scene.gravity[2] * share])
-    n = branch[~bound] / np.linalg.norm(branch[~bound], axis=1)[:, None]
+    n = n[~bound]
     every = [(n[:, a] * n[:, b]).mean() if len(n) else math.nan for a, b in FABRIC]
-    return contact, moved, weights, f[bound].sum(axis=0), np.array(every)
+    return contact, moved, weights, f[bound].sum(axis=0), directions, np.array(every)
 
 
 def _line(z: Floats, top: Floats, rise: Floats, length: float) -> Floats:

@@ -13,11 +13,14 @@ from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import average, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
+from ryusa.model.plane_section import section_area
 from ryusa.model.scene import Bools
 from ryusa.printed import ByShape
 
 CHUNK = 400_000  # places of grains held in memory at once
 MOST = 100_000  # layers; more come from a grain that was thrown away
+TENTHS = (0.1, 0.9)  # shares of the grains below whose heights walls must be upright, to
+UPRIGHT = 0.01  # this share of the area of a section
 V, A, U_X, U_Z, SPIN, U_XX, U_ZZ = range(7)  # what is summed over the slices in a layer
 
 
@@ -149,7 +152,7 @@ def profiles(
     above : what heights are counted from, and where a layer begins: "datum", z = 0 of the case; "bed crest",
         the top of the highest fixed grain; "mean crest", the mean of all their tops.
     between : count only grains whose centre lies in this range of x [m], inside the period; default the
-        whole period. A scene that is open along x needs it.
+        whole period, or all between upright walls. A scene that is open along x otherwise needs it.
     bed : give the concentration of the fixed grains too; they never count as moving ones.
 
     Raises
@@ -168,16 +171,16 @@ def profiles(
     t, first, last, scene, since = _frames(run, begin, end)
     z_0, thickness = level_of(scene, above), layer * scene.d_mean
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
-    length = float(scene.period[0]) if between is None else between[1] - between[0]
-    width = _width(scene, lanes)
-    if not (math.isfinite(length) and length > 0.0):
+    area = area_of(run, first, scene, lanes) if between is None else _stretch(scene, lanes, between)
+    if not math.isfinite(area):
         raise ResultsError(
-            "the scene is open along x: a profile is a mean along a period, and there is none. In Python, "
+            f"the scene is open along {'y' if math.isfinite(scene.period[0]) else 'x'}: a profile is a mean "
+            "over periods or between upright walls, and there are none. In Python, "
             "ryusa.measure.profiles(run, between=(x_0, x_1)) takes a stretch"
         )
     sums, edge = _sums(run, first, last, scene, z_0, thickness, between, bed)
-    n_layer, area = sums.shape[1], length * width
-    space = area * thickness
+    n_layer, space = sums.shape[1], area * thickness
+    length = float(scene.period[0]) if between is None else between[1] - between[0]
     side = length * thickness * lanes if scene.plane_case else math.nan
     volume, weight = sums[:, :, V], sums[:, :, V].sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -330,19 +333,37 @@ def _inside(x: Floats, scene: Scene, between: tuple[float, float] | None) -> Boo
     return (x >= 0.0) & (x < between[1] - between[0])
 
 
+def area_of(run: Run, first: int, scene: Scene, lanes: int) -> float:
+    """Area of bed, all lanes together, or of the sample between upright walls [m2]; inf where it is open.
+
+    Between walls it is that of the section at the middle height of the grains in frame `first`, seen from
+    their middle; inf where those at the heights of the lowest and highest tenth differ by 1 % or more.
+    """
+    along, across = float(scene.period[0]), _width(scene, lanes)
+    if scene.plane_case or math.isfinite(along * across):
+        return along * across
+    x = np.asarray(run.frames.x[first], dtype=np.float64)
+    heights = np.nanquantile(x[:, 2], (0.5, *TENTHS))
+    middle, up, t = np.nanmean(x, axis=0), np.array([0.0, 0.0, 1.0]), float(run.frames.t[first])
+    area, *others = [section_area(scene, np.array([*middle[:2], z]), up, t) for z in heights]
+    return area if all(abs(one - area) < UPRIGHT * area for one in others) else math.inf
+
+
+def _stretch(scene: Scene, lanes: int, between: tuple[float, float]) -> float:
+    """Area of a stretch of bed [m2]; inf where it has no width or no length."""
+    length = between[1] - between[0]
+    return length * _width(scene, lanes) if length > 0.0 else math.inf
+
+
 def _width(scene: Scene, lanes: int) -> float:
-    """Width of bed across the flow [m]."""
+    """Width of bed across the flow, in a period or between planes [m]; inf where there is none."""
     if scene.plane_case:
-        slab = scene.slab_width
-        return lanes * (slab if math.isfinite(slab) else float(scene.d.mean()))
+        return lanes * (scene.slab_width if math.isfinite(scene.slab_width) else float(scene.d.mean()))
     if math.isfinite(scene.period[1]):
         return float(scene.period[1])
-    # side walls: planes that face each other across y
     facing = scene.plane_normal[:, 1] * scene.plane_active
     right, left = (scene.plane_point[facing == side, 1] for side in (1.0, -1.0))
-    if not (len(right) and len(left)):
-        raise ResultsError("the scene is open along y: it has no width to divide by")
-    return float(left.min() - right.max())
+    return float(left.min() - right.max()) if len(right) and len(left) else math.inf
 
 
 def _mean(name: str, unit: str, series: Floats) -> Layers:

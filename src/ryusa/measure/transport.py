@@ -19,7 +19,7 @@ from ryusa.measure.profiles import (
     _mean,
     _quotient,
     _sums,
-    _width,
+    area_of,
     profiles,
 )
 from ryusa.measure.snapshot import lanes_of, scene_at
@@ -259,7 +259,7 @@ def window_of(
 ) -> tuple[Floats, int, int, Scene, float]:  # fmt: skip
     """Times of the frames in a window [s], the first and one beyond the last, the scene, the area [m2].
 
-    `plan` finds the area where the scene is open along x.
+    `plan` finds the area of a scene that is open along x; without it such a scene is refused.
     """
     since = settle_time(run) if begin is None else begin
     t = np.asarray(run.frames.t, dtype=np.float64)
@@ -273,7 +273,10 @@ def window_of(
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     if not math.isfinite(scene.period[0]):
         raise ResultsError("the scene is open along x: it has no area of bed to divide by")
-    return t[first:last], first, last, scene, float(scene.period[0]) * _width(scene, lanes)
+    area = area_of(run, first, scene, lanes)
+    if not math.isfinite(area):
+        raise ResultsError("the scene is open along y: it has no width to divide by")
+    return t[first:last], first, last, scene, area
 
 
 def places_of(run: Run, first: int, last: int) -> Iterator[Floats]:

@@ -14,7 +14,8 @@ def contact_forces(state: State, scene: Scene) -> NDArray[np.void]:
     Parameters
     ----------
     state : a snapshot; its contact history holds the forces of the step before, at x - v dt.
-    scene : the scene; fixed grains and planes stand where they stood at the start.
+    scene : the scene; fixed grains and planes stand where they stood at the start, walls where servos brought
+        them.
     """
     held = state.contacts
     rows = np.zeros(len(held), dtype=schema.FORCE)

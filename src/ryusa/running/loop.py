@@ -320,8 +320,7 @@ class Loop:
             after = change.apply(self.scene)
             if self._water is not None:
                 finish_before(self.engine, self._water, self._step, after)
-            state = self.engine.state()
-            self.scene = after
+            state, self.scene = self.engine.state(), after
             self.engine.load(with_servos(self.scene, self.servo), state)
             self._collect_contacts()
             self._n_changed += 1
@@ -335,7 +334,8 @@ class Loop:
 
     def _record(self) -> None:
         state, tally = self.engine.state() if self.scene.forces else self.engine.grains(), self.engine.tally()
-        self.recorder.frame(state, tally, self._water, self.servo and self.servo.travel_at(self._t))
+        travel = self.servo and self.servo.travel_at(self._t)
+        self.recorder.frame(state, tally, self._water, travel, with_servos(self.scene, self.servo))
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):
             self.recorder.reached(self._step)  # the frame of the failure is recorded

@@ -63,7 +63,12 @@ class RecordBuffer:
         return frames + forces + passages + self.n_contact * EVENT.itemsize
 
     def frame(
-        self, state: State, tally: Tally, water: RunWater | None, travel: NDArray[np.float64] | None
+        self,
+        state: State,
+        tally: Tally,
+        water: RunWater | None,
+        travel: NDArray[np.float64] | None,
+        placed: Scene | None,
     ) -> None:
         """Add a frame, as copies of its arrays; parameters as for `Recorder.frame`."""
         if isinstance(water, RowCoupling):
@@ -79,7 +84,7 @@ class RecordBuffer:
         row["x"][k], row["v"][k], row["omega"][k] = state.x, state.v, state.omega
         row["image"][k] = state.image if len(state.image) else 0
         if self._forces is not None:
-            self._forces.append(contact_forces(state, self._scene))
+            self._forces.append(contact_forces(state, placed or self._scene))
         if state.bodies is not None:
             for name in schema.BODY_DATASETS:
                 moved = getattr(state.bodies, name.removeprefix("bodies/"))

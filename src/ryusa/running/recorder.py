@@ -134,6 +134,7 @@ class Recorder:
         tally: Tally,
         water: RunWater | None = None,
         travel: NDArray[np.float64] | None = None,
+        placed: Scene | None = None,
     ) -> None:
         """Add a frame to the buffer, as copies of its arrays.
 
@@ -141,12 +142,13 @@ class Recorder:
         ----------
         water : where a column or a row of columns is solved.
         travel : of walls that servos press [m], shape (n_wall,), where there are some.
+        placed : then the scene with these walls where they are, which gives contact forces their directions.
         """
         self.n_frame += 1
         if self._verify_until is not None:
             self._compare(state)
             return
-        self._buffer.frame(state, tally, water, travel)
+        self._buffer.frame(state, tally, water, travel, placed)
 
     def contacts(self, events: NDArray[np.void]) -> None:
         """Add contacts that ended to the buffer, dtype model.EVENT; the array is kept."""

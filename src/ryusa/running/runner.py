@@ -4,7 +4,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -182,6 +182,7 @@ def run_scene(
     frames: float,
     stop: Stop,
     changes: Sequence[Change] = (),
+    forces: bool = False,
     threads: int = 1,
     progress: bool = True,
     overwrite: bool = False,
@@ -194,11 +195,10 @@ def run_scene(
 
     Parameters
     ----------
-    scene, state : the scene, and the initial state.
-    folder : the run folder.
+    scene, state, folder, stop : the scene, the initial state, the run folder, and when to stop.
     frames : time between frames [s]; frame k falls on step round(k frames/dt).
-    stop : when to stop.
     changes : changes of the scene during the run, in any order.
+    forces : record contact forces with every frame, as record.forces of a case does.
     threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; a resume needs the others
 
     Returns
@@ -213,7 +213,9 @@ def run_scene(
 
     needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, scene.contact.timing, scene.coupled)
     refuse_if_too_large(needed, scene.n_grain)
-    about = _CaseData({"title": "", "record": {"frames": frames, "settle": stop.settle}})
+    scene = replace(scene, forces=forces or scene.forces)
+    record = {"frames": frames, "settle": stop.settle, **({"forces": True} if scene.forces else {})}
+    about = _CaseData({"title": "", "record": record})
     options = _Options(threads, progress, overwrite, engine, checkpoint, resume, force)
     return _run_or_resume(lambda: (scene, state, ()), Path(folder), frames, stop, changes, options, about)
 
@@ -234,8 +236,7 @@ def _run_or_resume(
     with catch_signals() as signal:
         engine = _engine(options.engine, options.threads)
         origin = provenance.begin(
-            threads=options.threads, seed=about.seed, engine=engine.name,
-            overrides=about.overrides or {},
+            threads=options.threads, seed=about.seed, engine=engine.name, overrides=about.overrides or {}
         ) | origin_of_reach(about.made)  # fmt: skip
         resolved = as_read_back(about.resolved)
         identity = run_identity(
@@ -393,24 +394,22 @@ class _Run:
 
 def _refuse(scene: Scene, frames: float, stop: Stop) -> None:
     if stop.endless:
-        raise CaseError(
-            "stop", None, "needs time, saltations or rest: without one of them the run would never end"
-        )
+        why = "needs time, saltations or rest: without one of them the run would never end"
+        raise CaseError("stop", None, why)
     if not frames >= scene.dt:
         raise CaseError("record.frames", f"{frames:g} s", f"must be at least one step, {scene.dt:g} s")
     if math.isfinite(stop.time) and stop.time / scene.dt > _MOST_STEPS:
-        raise CaseError(
-            "stop.time", f"{stop.time:g} s", f"gives more steps of {scene.dt:g} s than can be counted"
-        )
+        why = f"gives more steps of {scene.dt:g} s than can be counted"
+        raise CaseError("stop.time", f"{stop.time:g} s", why)
     if stop.saltations is not None and scene.events == EventRule.NONE:
         raise CaseError("record.events", "none", "must be 'all' or 'tracked' when saltations end the run")
 
 
 def _engine(named: Engine | str | None, threads: int) -> Engine:
     """The engine asked for, by name or as it is."""
-    if named is not None and not isinstance(named, str):
-        return named
-    return registry.create(named or registry.DEFAULT, threads=threads)
+    if isinstance(named, str | None):
+        return registry.create(named or registry.DEFAULT, threads=threads)
+    return named
 
 
 def _write_text(path: Path, text: str) -> None:
