@@ -193,14 +193,14 @@ def measures_table() -> str:
 def questions() -> str:
     """The packaged cases by question, with what to type and how long they take by `ryusa check`."""
     from ryusa.casefile import derive
-    from ryusa.casefile.estimate import seconds_needed
     from ryusa.casefile.read import read
+    from ryusa.casefile.wall_time import wall_time_by_rule
     from ryusa.cases import case_path
     from ryusa.cases.questions import QUESTIONS
 
     def minutes(name: str) -> str:
         case = read(case_path(f"{name}.toml"))
-        seconds = seconds_needed(case, derive(case))
+        seconds = wall_time_by_rule(case, derive(case)).seconds
         return f"`{name}`, {max(round(seconds / 60.0), 1)} min"
 
     lines = ["| question | case, and minutes on one core | then | what comes out |", "|---|---|---|---|"]

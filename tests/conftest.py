@@ -6,6 +6,7 @@ import pytest
 from hypothesis import settings
 
 os.environ["RYUSA_KERNELS"] = "native"  # what is tested is compiled from this source, whatever is installed
+os.environ["RYUSA_RUN_TIMES"] = "off"  # no estimate depends on what this machine has run
 
 # With new examples on every run one run of the suite fails and the next passes; `make fuzz` looks further.
 # No deadline: first calls compile, and machines are shared.

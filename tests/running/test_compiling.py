@@ -9,11 +9,14 @@ from typing import Any
 
 import pytest
 
+from ryusa.casefile.read import read
+from ryusa.cases import case_path
 from ryusa.compiled import processor, store, tiers, waiting
 from ryusa.compiled.content import latest
 from ryusa.compiled.function import compiled
+from ryusa.compiled.seconds import Seconds
 from ryusa.running import compiling
-from ryusa.running.compiling import compiling_told, expected_of, words_of
+from ryusa.running.compiling import compiling_row, compiling_told, expected_of, words_of
 from ryusa.running.progress import Progress
 
 SOURCE = Path(compiling.__file__).parents[2]
@@ -99,7 +102,23 @@ def test_functions_that_are_expected_exist_under_these_names(scene_with):
             assert any(isinstance(one, CodeType) and one.co_name == made for one in inside)
         else:
             assert latest[name] is found
-    assert expected_of(scene_with(3)) == compiling._OF_GRAINS
+    assert expected_of(grains=True, clumps=False, column=False, row=False) == compiling._OF_GRAINS
+
+
+def test_check_says_how_long_compiling_takes_at_most(tmp_path, monkeypatch):
+    empty = store.Store(tmp_path, processor.own())
+    monkeypatch.setattr(store, "own", lambda: empty)
+    monkeypatch.setattr(waiting, "_packaged", frozenset)
+    row = compiling_row(read(case_path("weir.toml")))
+    assert row.value == pytest.approx(sum(compiling._OF_ROW.values())) and row.shown == "up to 14 s"
+    assert compiling_row(read(case_path("river.toml"))).value > row.value
+    empty.folder.mkdir(exist_ok=True)
+    name = next(iter(compiling._OF_ROW))
+    Seconds(tmp_path).add({f"whole {name}": 100.0}, [])
+    waiting._record_in.cache_clear()
+    assert compiling_row(read(case_path("weir.toml"))).value > 100.0
+    monkeypatch.setattr(waiting, "_packaged", lambda: frozenset(compiling._OF_ROW))
+    assert compiling_row(read(case_path("weir.toml"))).value == 0.0
 
 
 def test_every_entry_of_the_table_of_words_names_something():

@@ -56,6 +56,19 @@ def test_a_resumed_run_estimates_the_remaining_time_from_its_own_start(
     assert "about 24 s left" in (tmp_path / "log.txt").read_text()
 
 
+def test_at_first_the_remaining_time_follows_from_what_was_expected(tmp_path: Path, now: list[float]) -> None:
+    progress = Progress(
+        tmp_path / "log.txt", shown=False, expected=8000.0, stream=io.StringIO(), clock=lambda: now[0]
+    )
+    progress.start_at(0.5)
+    for now[0], share in ((60.0, 0.5005), (120.0, 0.51)):
+        progress.update(moment(share))
+    progress.close()
+    first, second = (tmp_path / "log.txt").read_text().splitlines()
+    assert "about 3940 s left" in first  # half of it, less a minute
+    assert "about 5880 s left" in second  # as fast as it goes
+
+
 def test_the_remaining_time_is_not_estimated_before_a_thousandth_of_the_run(
     tmp_path: Path, now: list[float]
 ) -> None:

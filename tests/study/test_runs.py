@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -294,6 +295,36 @@ def test_the_remaining_time_follows_from_the_finished_runs(capsys):
     assert said.out == ""
     assert "2/4 runs, about 20 s left, now: saltation 0 s 3 0.01 s" in said.err
     assert "grain 7 lost" in said.err
+
+
+def test_a_study_that_asks_for_more_runs_counts_them_anew(capsys):
+    now = [0.0]
+    runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 7)]
+    say = ProgressLines(clock=lambda: now[0])
+    for wave in (runs[:4], runs[4:]):
+        say.begin(CostEstimate(dict.fromkeys(wave, 10.0), (), 10**6, 1), Path())
+        for one in wave:
+            say.started(one)
+            say.lost(one)  # its process was ended from outside: it is tried again, and counts once
+            say.started(one)
+            now[0] += 20.0
+            say.tick()
+            say.done(one, 20.0, opened=False, problem="")
+        say.end()
+    counts = re.findall(r"(\d+)/(\d+) runs", capsys.readouterr().err)
+    assert [(int(n), int(of)) for n, of in counts] == [(0, 4), (1, 4), (2, 4), (3, 4), (0, 2), (1, 2)]
+
+
+def test_a_bar_of_more_runs_stands_alone(monkeypatch):
+    say = ProgressLines()
+    monkeypatch.setattr(say._console, "_force_terminal", True)
+    runs = [paper_run("saltation", SHORT, seed) for seed in (1, 2)]
+    for one in runs:
+        say.begin(CostEstimate({one: 10.0}, (), 10**6, 1), Path())
+        assert [(task.completed, task.total) for task in say._bar.tasks] == [(0, 1)]
+        say.started(one)
+        say.done(one, 1.0, opened=False, problem="")
+        say.end()
 
 
 def test_without_progress_output_nothing_else_is_needed(fakes, tmp_path):

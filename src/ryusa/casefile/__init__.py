@@ -14,12 +14,13 @@ module, or in a package of `schema`, `checks`, `values` and `rows`. `Case` puts 
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived, derive
-from ryusa.casefile.estimate import disk_needed, frames_expected, steps_expected
+from ryusa.casefile.estimate import disk_needed, frames_expected
 from ryusa.casefile.explain import explain
 from ryusa.casefile.keys import all_keys, described
 from ryusa.casefile.read import json_schema, json_schema_text, read, read_text
 from ryusa.casefile.record import ChangeSection
 from ryusa.casefile.resolved import resolved
+from ryusa.casefile.wall_time import steps_expected
 
 __all__ = [
     "Case",

@@ -5,16 +5,12 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.bed import bed_thickness
-from ryusa.casefile.column.checks import SPARE
-from ryusa.casefile.column.schema import CELL, column_keys
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.record import MANY, events_of
-from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import row_plan, segments_of, stream, water_alone
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
+from ryusa.casefile.wall_time import cells_of_row, steps_expected, time_expected, wall_time, wall_time_by_rule
 from ryusa.laws.families import ContactTiming
 from ryusa.model.contacts import N_EVENT
 
@@ -45,39 +41,6 @@ SETTLED, SETTLED_PLANE, IN_FLOW, APART = 2.1, 1.6, 1.5, 0.1  # contacts per free
 BYTES_PER_EVENT = 8 * N_EVENT
 EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
 EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
-# On one core of an ordinary machine; within a factor 1.5 for saltation, box, heap and dense flows:
-SECONDS_PER_RUN = 0.3  # to begin and to end
-SECONDS_PER_STEP = 4.0e-7  # of any step
-SECONDS_PER_GRAIN = 6.5e-8  # and per grain in it, in a plane scene
-SECONDS_PER_GRAIN_3D = 1.3e-7
-SECONDS_PER_GRAIN_IN_WATER = 6.0e-8  # on top
-# Within a factor 1.8 for columns of 36 to 600 cells, which add 0.15 us each:
-SECONDS_PER_EXCHANGE = 2.0e-4  # of momentum with a column
-SECONDS_PER_EXCHANGE_IN_ROW = 1.0e-3  # with a row of 1 to 8 segments, within a factor 1.4
-SECONDS_PER_GRAIN_EXCHANGED = 2.5e-7
-SECONDS_PER_ROW_CELL = 1.5e-7  # of a cell of a row of columns and step of the water
-SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
-HOUR = 3600.0  # [s]
-SECONDS_TO_REST = 10.0  # simulated, where only rest ends it
-
-
-def time_expected(case: Case) -> tuple[float, str]:
-    """Simulated time at most [s], and where that number comes from."""
-    found: list[tuple[float, str]] = []
-    if case.stop.time is not None:
-        sooner = ", or sooner: when stop.precision is reached" if case.stop.precision else ""
-        found.append((case.stop.time, f"stop.time{sooner}"))
-    if case.stop.saltations is not None:
-        guess = case.record.settle + case.stop.saltations * SECONDS_PER_SALTATION
-        found.append((guess, f"guess: settle + {SECONDS_PER_SALTATION} s per saltation"))
-    if not found:
-        found.append((SECONDS_TO_REST, f"guess: at rest within {SECONDS_TO_REST:g} s"))
-    return min(found)
-
-
-def steps_expected(case: Case, derived: Derived) -> int:
-    """Steps of the run at most, or by guess where only events end it."""
-    return math.ceil(time_expected(case)[0] / derived.dt)
 
 
 def frames_expected(case: Case) -> int:
@@ -166,7 +129,7 @@ def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
 
 def held_back(case: Case, derived: Derived) -> float:
     """Bytes of frames and contacts that wait to be written, one frame at least."""
-    seconds = seconds_needed(case, derived)
+    seconds = wall_time_by_rule(case, derived).seconds
     interval = min(max(HELD_SHORTEST, HELD_SHARE * seconds), HELD_LONGEST)
     whole = frames_expected(case) * _frame(case, derived) + disk_for_events(case, derived)
     return max(_frame(case, derived), min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
@@ -192,40 +155,11 @@ def memory_needed(case: Case, derived: Derived) -> int:
     return round(MEMORY_PER_RUN + grains + (1.0 + WRITING) * more)
 
 
-def seconds_needed(case: Case, derived: Derived) -> float:
-    """Wall time by a rule of thumb [s], one core."""
-    per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
-    if case.water is not None:
-        per_grain += SECONDS_PER_GRAIN_IN_WATER
-    steps = 1 if water_alone(case) or case.water is None else column_keys(case).interval
-    per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere
-    per_step += SECONDS_PER_ROW_CELL * cells_of_row(case) / steps
-    if case.water is not None and case.water.profile == "column" and not water_alone(case):
-        exchange = SECONDS_PER_EXCHANGE if row_keys(case) is None else SECONDS_PER_EXCHANGE_IN_ROW
-        per_step += (exchange + SECONDS_PER_GRAIN_EXCHANGED * derived.n_sphere) / steps
-    return SECONDS_PER_RUN + steps_expected(case, derived) * per_step
-
-
-def cells_of_row(case: Case) -> int:
-    """Cells of a row of columns; 0 where there is none. Over a bed it is an estimate: grains decide."""
-    if row_keys(case) is None:
-        return 0
-    if water_alone(case) or stream(case):
-        plan = row_plan(case)
-        return plan.n * plan.n_cell
-    bed, depth = bed_thickness(case), 0.0 if case.water is None else case.water.depth or 0.0
-    height = SPARE * depth + (bed if math.isfinite(bed) else 0.0)
-    return segments_of(case)[2] * math.ceil(
-        height / (column_keys(case).cell or CELL * reference_diameter(case))
-    )
-
-
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Steps, frames, disk, memory and wall time."""
     simulated, origin = time_expected(case)
-    disk, seconds = disk_needed(case, derived), seconds_needed(case, derived)
+    disk, took = disk_needed(case, derived), wall_time(case, derived)
     memory, contacts = memory_needed(case, derived), contacts_expected(case, derived)
-    wall = f"{seconds / HOUR:.3g} h" if seconds > HOUR else f"{seconds:.3g} s"
     alone = water_alone(case)
     held = "of the program; a first run compiles its laws and takes up to 0.4 GB more"
     held = (
@@ -251,7 +185,7 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
         *([] if alone else _events(case, derived)),
         *_disk(case, derived),
         _size("memory", memory, held),
-        ExplainRow("cost", "wall time", seconds, "s", wall, "rule of thumb for one core"),
+        ExplainRow("cost", "wall time", took.seconds, "s", str(took), took.origin),
     ]
 
 

@@ -125,7 +125,7 @@ def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int, exten
     from ryusa.studies.calibrate.design import filling_points
     from ryusa.studies.calibrate.runs import RUNS, CaseRuns
     from ryusa.study import duration
-    from ryusa.study.cost import by_cores
+    from ryusa.study.cost import basis_of, by_cores
     from ryusa.study.executors import executor_of
 
     for prior in asked.priors:
@@ -147,10 +147,11 @@ def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int, exten
         cost, longest = cost + n * each, max(longest, *costs)
         disk += n * sum(one.disk() for one in plan.first_runs) / len(costs)
     total = n * len(plans)
+    basis = basis_of(one for plan in plans.values() for one in plan.first_runs)
     at_once = "one at a time" if jobs == 1 else f"{jobs} at a time"
     typer.echo(
-        f"{total} runs in all: about {duration(max(cost / jobs, longest))} {at_once}, "
-        f"{format_bytes(round(disk))} on the disk, in {folder / RUNS}"
+        f"{total} runs in all: about {duration(max(cost / jobs, longest))} {at_once}, {basis}, "
+        f"compiling apart; {format_bytes(round(disk))} on the disk, in {folder / RUNS}"
     )
     typer.echo(f"by number of cores: {by_cores(cost, longest, total)}")
     if extend:

@@ -122,7 +122,8 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
 
     from ryusa.build import build
     from ryusa.casefile import derive, explain
-    from ryusa.casefile.estimate import seconds_needed
+    from ryusa.casefile.wall_time import wall_time
+    from ryusa.running.compiling import compiling_row
     from ryusa.running.pace import other_engines
 
     derived = derive(found)
@@ -135,7 +136,7 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
     for heading in ("name", "value", "where it comes from"):
         table.add_column(heading, overflow="fold", justify="left")
     section = None
-    for row in explain(found, derived):
+    for row in [*explain(found, derived), compiling_row(found)]:
         if row.section != section:
             section = row.section
             table.add_row(f"[bold]{escape(section)}[/bold]")
@@ -149,7 +150,7 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
     )
     for note in built.notes if built is not None else notes:
         console.print(f"  {escape(note)}", highlight=False)
-    if said := other_engines(None, derived.n_sphere, seconds_needed(found, derived), 1):
+    if said := other_engines(None, derived.n_sphere, wall_time(found, derived), 1):
         console.print("[bold]a long run[/bold]")
         for note in said:
             console.print(f"  {escape(note)}", highlight=False)

@@ -1,15 +1,11 @@
 """How long functions took to compile on this machine, by their names, which outlast every change of them.
 
-One small file beside the code (store.py). Processes that write it at once may lose a number of one another,
-which costs an estimate and no more.
+One small file beside the code (store.py).
 """
 
-import contextlib
-import json
-import os
-import tempfile
 from pathlib import Path
-from typing import Any
+
+from ryusa.compiled import small_json
 
 _FILE = "seconds.json"
 _MOST = 4_000  # names, and contents, that are remembered; the latest
@@ -32,10 +28,10 @@ class Seconds:
 
     def _read(self) -> None:
         try:
-            found: Any = json.loads(self._file.read_text(encoding="utf-8"))
+            found = small_json.read(self._file)
             self.by_name |= {str(name): float(seconds) for name, seconds in found["seconds"].items()}
             self.contents |= dict.fromkeys(str(one) for one in found["contents"])
-        except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        except (ValueError, TypeError, KeyError, AttributeError):
             return  # none yet, or not ours
 
     def add(self, by_name: dict[str, float], contents: list[str]) -> None:
@@ -58,13 +54,4 @@ class Seconds:
             "seconds": dict(list(self.by_name.items())[-_MOST:]),
             "contents": list(self.contents)[-_MOST:],
         }
-        with contextlib.suppress(OSError):
-            self._file.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=self._file.parent, prefix=".", suffix=".part")
-            try:
-                with os.fdopen(handle, "w", encoding="utf-8") as out:
-                    json.dump(found, out)
-                os.replace(name, self._file)
-            except OSError:
-                os.unlink(name)
-                raise
+        small_json.write(self._file, found)

@@ -119,6 +119,19 @@ def left() -> float:
     return max(total, *(end - time.perf_counter() for end in _now.beside.values()), 0.0)
 
 
+def at_most(expected: Mapping[str, float]) -> float:
+    """Processor time [s] that compiling some functions takes where the store has none of them.
+
+    Parameters
+    ----------
+    expected : as of `told`; what comes with a package takes none.
+    """
+    by_name, packaged = _record().by_name, _packaged()
+    return sum(
+        by_name.get(f"whole {name}", seconds) for name, seconds in expected.items() if name not in packaged
+    )
+
+
 @contextmanager
 def told(listener: Listener, expected: Mapping[str, float] = MappingProxyType({})) -> Generator[None]:
     """Tell a listener of each entry and each piece that is compiled.

@@ -3,10 +3,18 @@
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
+from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.row.values import water_alone
+from ryusa.casefile.rows import ExplainRow
+from ryusa.casefile.shape import has_clumps
 from ryusa.compiled import waiting
 from ryusa.model import Scene
 from ryusa.running.progress import Progress
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
 
 _AFTER = 1.5  # s of a compilation before a word is said
 _LOOK = 0.5  # s between two looks at what is compiled
@@ -71,16 +79,32 @@ def words_of(name: str) -> str:
     return next((words for first, words in _WORDS.items() if name.startswith(first)), name.rpartition(".")[2])
 
 
-def expected_of(scene: Scene) -> dict[str, float]:
-    """Functions of a run that take long to compile, with what each takes [s]."""
+def expected_of(*, grains: bool, clumps: bool, column: bool, row: bool) -> dict[str, float]:
+    """Functions of a run that take long to compile, with what each takes [s].
+
+    Parameters
+    ----------
+    grains, clumps : whether there are any.
+    column, row : whether the water is a column, or a row of such.
+    """
     expected: dict[str, float] = {}
-    if scene.n_grain:
-        expected |= _OF_GRAINS | (_OF_BODIES if scene.bodies is not None else {})
-    if scene.row is not None:
-        expected |= _OF_ROW | (_OF_GRAINS_IN_ROW if scene.n_grain else {})
-    elif scene.column is not None:
+    if grains:
+        expected |= _OF_GRAINS | (_OF_BODIES if clumps else {})
+    if row:
+        expected |= _OF_ROW | (_OF_GRAINS_IN_ROW if grains else {})
+    elif column:
         expected |= _OF_COLUMN
     return expected
+
+
+def compiling_row(case: "Case") -> ExplainRow:
+    """Row of `ryusa check` of the time that compiling takes at most."""
+    row = row_keys(case) is not None
+    column = case.water is not None and case.water.profile == "column"
+    expected = expected_of(grains=not water_alone(case), clumps=has_clumps(case), column=column, row=row)
+    seconds = waiting.at_most(expected)
+    origin = "before the first step, once for this kind of case: what is kept of earlier runs takes none"
+    return ExplainRow("cost", "compiling", seconds, "s", f"up to {_round(seconds)} s", origin)
 
 
 @contextmanager
@@ -88,7 +112,11 @@ def compiling_told(progress: Progress, scene: Scene) -> Generator[None]:
     """Say in a progress what is compiled within this block, and nothing where nothing is."""
     teller = _Teller(progress)
     try:
-        with waiting.told(teller.heard, expected_of(scene)):
+        expected = expected_of(
+            grains=scene.n_grain > 0, clumps=scene.bodies is not None,
+            column=scene.column is not None, row=scene.row is not None,
+        )  # fmt: skip
+        with waiting.told(teller.heard, expected):
             yield
     finally:
         teller.end()

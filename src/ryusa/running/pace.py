@@ -4,6 +4,7 @@ import math
 import time
 from dataclasses import dataclass, field
 
+from ryusa.casefile.wall_time import WallTime
 from ryusa.compiled import waiting
 from ryusa.engine import registry
 
@@ -12,20 +13,17 @@ _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
 
 
-def other_engines(engine: object, n_grain: int, seconds: float, threads: int) -> tuple[str, ...]:
+def other_engines(engine: object, n_grain: int, took: WallTime, threads: int) -> tuple[str, ...]:
     """A note on a long run of the CPU engine, with the engines that may serve better; or none.
 
     Parameters
     ----------
     engine : as asked for; None is that of the CPU.
     n_grain : number of grains.
-    seconds : wall time that the run is expected to take on one core [s].
+    took : wall time that the run is expected to take on these threads.
     threads : threads of the engine.
-
-    >>> other_engines(None, 1000, 600.0, 1)
-    ()
     """
-    days = seconds / threads / 86_400.0
+    days = took.seconds / 86_400.0
     if engine not in {None, registry.DEFAULT} or not _LONG <= days < math.inf:
         return ()
     others = [name for name in registry.names() if name != registry.DEFAULT]
@@ -33,7 +31,7 @@ def other_engines(engine: object, n_grain: int, seconds: float, threads: int) ->
         f"--engine {name} ({registry.unavailable(name) or registry.entry(name).summary})" for name in others
     ]
     return (
-        f"about {days:.2g} days on {threads} thread{'s' if threads > 1 else ''}, by a rule of thumb "
+        f"about {days:.2g} days on {threads} thread{'s' if threads > 1 else ''}, {took.basis} "
         f"({n_grain:,} grains). Other engines: {'; '.join(here)} (docs/big-runs.md)",
     )
 

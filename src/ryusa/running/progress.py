@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _BAR_EVERY = 0.2  # s
 _LINE_EVERY = 5.0  # s
 _LINE_SHARE = 0.1  # of the run; one line per such share if that takes longer than _LINE_EVERY
-_ESTIMATED = 1e-3  # share of the run above which the remaining time is estimated
+_ESTIMATED = 1e-3  # share of the run above which the remaining time follows from the pace so far
 
 
 @dataclass(frozen=True)
@@ -44,17 +44,21 @@ class ProgressNumbers:
 
 
 class Progress:
-    """Lines to stderr and to log.txt; a bar instead of lines where stderr is a terminal."""
+    """Lines to stderr and to log.txt; a bar instead of lines where stderr is a terminal.
+
+    Until the run tells how long it takes, what is left follows from the time `expected` of the whole [s].
+    """
 
     def __init__(
         self,
         log: Path,
         *,
         shown: bool,
+        expected: float = math.nan,
         stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._shown, self._clock = shown, clock
+        self._shown, self._clock, self._expected = shown, clock, expected
         self._stream = sys.stderr if stream is None else stream
         self._log = log.open("a", encoding="utf-8", buffering=1)
         self._begun = self._last = self._last_log = self._paused = clock()
@@ -91,7 +95,7 @@ class Progress:
         if now - self._last_log < _LINE_EVERY or (slow and now - self._last_log < 12 * _LINE_EVERY):
             return
         self._last_log, self._share_log = now, moment.share
-        text = f"{100 * moment.share:3.0f} %  {moment}{_left(now - self._begun, self._share, moment.share)}"
+        text = f"{100 * moment.share:3.0f} %  {moment}{self._left(now, moment.share)}"
         self._write_log(text)
         if self._bar is None:
             self._show(text)
@@ -123,6 +127,13 @@ class Progress:
             self._bar = None
         self._log.close()
 
+    def _left(self, now: float, share: float) -> str:
+        """Words for the time left at a share of the run that is done."""
+        elapsed, done = now - self._begun, share - self._share
+        expected = self._expected * (1.0 - self._share) - elapsed
+        left = elapsed * (1.0 - share) / done if done >= _ESTIMATED else expected
+        return f"  about {left:.0f} s left" if left > 0.0 else ""
+
     def _write_log(self, text: str) -> None:
         if self._log.closed:
             return
@@ -138,12 +149,6 @@ class Progress:
             self._bar.console.print(text, highlight=False, markup=False)
         else:
             print(text, file=self._stream, flush=True)
-
-
-def _left(elapsed: float, begun: float, share: float) -> str:
-    if share - begun < _ESTIMATED or share >= 1.0:
-        return ""
-    return f"  about {elapsed * (1.0 - share) / (share - begun):.0f} s left"
 
 
 def _bar(stream: TextIO) -> "tuple[RichProgress, TaskID]":

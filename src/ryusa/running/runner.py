@@ -14,7 +14,6 @@ from ryusa.engine.pool import stepping
 from ryusa.engine.protocol import Engine
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
-from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
@@ -42,7 +41,7 @@ from ryusa.running.record_buffer import bytes_per_frame
 from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.servo import ServoRule
-from ryusa.running.stops import Stop
+from ryusa.running.stops import Stop, refuse_stop
 from ryusa.running.timeline import Change, refuse_changes
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
@@ -50,7 +49,6 @@ from ryusa.running.watch import Watch
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-_MOST_STEPS = 2**62
 _BEFORE = "before the first step; no run folder was created"
 
 
@@ -99,25 +97,26 @@ def run(
 
             case = read(Path(case))
         from ryusa.build import build, change
-        from ryusa.casefile import derive, estimate, resolved
+        from ryusa.casefile import derive, resolved
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
+        from ryusa.casefile.wall_time import keep_wall_time, wall_time
 
         derived = derive(case)
+        took = wall_time(case, derived, threads=threads, engine=_name(engine))
 
         def make() -> _Made:
             built = build(case, derived)
             signal.raise_if_stopped(_BEFORE)
-            said = other_engines(engine, built.scene.n_grain, estimate.seconds_needed(case, derived), threads)
+            said = other_engines(engine, built.scene.n_grain, took, threads)
             return built.scene, built.state, (*(str(note) for note in built.notes), *said)
 
         stop = Stop(
             time=math.inf if case.stop.time is None else case.stop.time,
             rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
             rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
-            saltations=case.stop.saltations,
-            settle=case.record.settle,
+            saltations=case.stop.saltations, settle=case.record.settle,
             precision=case.stop.precision.limits() if case.stop.precision else {},
-        )
+        )  # fmt: skip
         changes = [
             Change(entry.at, partial(change, case, entry=entry), words)
             for entry, words in zip(case.timeline, timeline_texts(case), strict=True)
@@ -126,7 +125,8 @@ def run(
         about = _CaseData(
             resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
             disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
-            files=files_beside(case), made=made_files(case),
+            files=files_beside(case), made=made_files(case), stepping=took.stepping,
+            keep_time=partial(keep_wall_time, case, derived, threads=threads, engine=_name(engine)),
         )  # fmt: skip
         return _run_or_resume(
             make,
@@ -159,6 +159,8 @@ class _CaseData:
     disk: _Disk | None = None
     files: Mapping[str, Path] = field(default_factory=dict[str, Path])  # copied beside the case, by name
     made: Mapping[str, bytes] = field(default_factory=dict[str, bytes])  # taken from other runs, by name
+    stepping: float = math.nan  # wall time that its steps are expected to take [s]
+    keep_time: Callable[[int, float, float], None] | None = None  # told steps, their seconds [s], grains
 
 
 @dataclass(frozen=True)
@@ -261,7 +263,7 @@ def _run_or_resume(
                 if going is not None:
                     return run.resume_from(going, make)
         scene, state, notes = make()
-        _refuse(scene, frames, stop)
+        refuse_stop(stop, scene, frames)
         reasons = stepping(engine, scene).refuses(scene)
         if reasons:
             raise CaseError("engine", engine.name, f"does not support this case: {'; '.join(reasons)}")
@@ -322,7 +324,12 @@ class _Run:
 
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
         """Run from the first step."""
-        return self._loop(scene, scene, state, Watch(scene, state), notes, None, None)
+        done = self._loop(scene, scene, state, Watch(scene, state), notes, None, None)
+        if done.complete and self.about.keep_time is not None:
+            made = done.summary
+            steps, took = made["steps"] - state.step, made["wall"] - made["compiled"]
+            self.about.keep_time(steps, took, made["particle_steps_per_second"] * took / steps)
+        return done
 
     def resume_from(self, going: ResumePoint, make: Callable[[], _Made]) -> Results:
         """Continue from the state of an earlier process."""
@@ -362,7 +369,9 @@ class _Run:
         recorded: RecordedSoFar | None,
         block: CheckpointBlock | None,
     ) -> Results:
-        reporter = Progress(self.folder / schema.LOG, shown=self.options.progress)
+        reporter = Progress(
+            self.folder / schema.LOG, shown=self.options.progress, expected=self.about.stepping
+        )
         try:
             for note in notes:
                 reporter.line(note)
@@ -392,17 +401,8 @@ class _Run:
         return Results.open(self.folder)
 
 
-def _refuse(scene: Scene, frames: float, stop: Stop) -> None:
-    if stop.endless:
-        why = "needs time, saltations or rest: without one of them the run would never end"
-        raise CaseError("stop", None, why)
-    if not frames >= scene.dt:
-        raise CaseError("record.frames", f"{frames:g} s", f"must be at least one step, {scene.dt:g} s")
-    if math.isfinite(stop.time) and stop.time / scene.dt > _MOST_STEPS:
-        why = f"gives more steps of {scene.dt:g} s than can be counted"
-        raise CaseError("stop.time", f"{stop.time:g} s", why)
-    if stop.saltations is not None and scene.events == EventRule.NONE:
-        raise CaseError("record.events", "none", "must be 'all' or 'tracked' when saltations end the run")
+def _name(named: Engine | str | None) -> str:
+    return named if isinstance(named, str) else registry.DEFAULT if named is None else named.name
 
 
 def _engine(named: Engine | str | None, threads: int) -> Engine:

@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from ryusa.casefile.precision import ErrorLimit
 from ryusa.engine.protocol import Engine
+from ryusa.errors import CaseError
 from ryusa.model import Scene
+from ryusa.model.scene import EventRule
 
+_MOST_STEPS = 2**62
 HOP_RISE = (
     0.1  # rise of the centre, in d, that a flight between two bed contacts must allow to be a saltation
 )
@@ -31,6 +34,27 @@ class Stop:
     def endless(self) -> bool:
         """True if no condition would ever end the run."""
         return math.isinf(self.time) and math.isinf(self.rest_for) and self.saltations is None
+
+
+def refuse_stop(stop: Stop, scene: Scene, frames: float) -> None:
+    """Refuse a run that would never end, or whose steps or frames cannot be made.
+
+    Raises
+    ------
+    CaseError : names the key.
+    """
+    if stop.endless:
+        raise CaseError(
+            "stop", None, "needs time, saltations or rest: without one of them the run would never end"
+        )
+    if not frames >= scene.dt:
+        raise CaseError("record.frames", f"{frames:g} s", f"must be at least one step, {scene.dt:g} s")
+    if math.isfinite(stop.time) and stop.time / scene.dt > _MOST_STEPS:
+        raise CaseError(
+            "stop.time", f"{stop.time:g} s", f"gives more steps of {scene.dt:g} s than can be counted"
+        )
+    if stop.saltations is not None and scene.events == EventRule.NONE:
+        raise CaseError("record.events", "none", "must be 'all' or 'tracked' when saltations end the run")
 
 
 class RestDetector:

@@ -30,6 +30,7 @@ class CostEstimate:
     disk : size of the runs to be made [bytes].
     jobs : number of runs at a time.
     others : number of finished runs made by other states of the code, by state.
+    basis : what the costs follow from, in words.
     """
 
     costs: Mapping[Task, float]
@@ -37,6 +38,7 @@ class CostEstimate:
     disk: int
     jobs: int
     others: Mapping[str, int] = field(default_factory=dict[str, int])
+    basis: str = "by rule of thumb"
 
     @property
     def core_seconds(self) -> float:
@@ -55,7 +57,7 @@ class CostEstimate:
         at_once = "one at a time" if self.jobs == 1 else f"{self.jobs} at a time"
         return (
             f"{_runs(len(self.costs))} to make{there}: about {duration(self.seconds)} {at_once} "
-            f"({self.core_seconds / 60:.0f} core minutes by rule of thumb), "
+            f"({self.core_seconds / 60:.0f} core minutes {self.basis}, compiling apart), "
             f"{format_bytes(self.disk)} on the disk"
             f"{self._old()}"
         )
@@ -118,7 +120,20 @@ def estimate_cost(wanted: Iterable[Task], folder: Path, *, jobs: int, again: boo
     costs = {one: one.cost() for one in wanted if one not in there}
     others = Counter(code for code in there.values() if is_other(code, opened=True))
     disk = sum(one.disk() for one in costs)
-    return CostEstimate(costs, tuple(there), disk, jobs, dict(others.most_common()))
+    return CostEstimate(costs, tuple(there), disk, jobs, dict(others.most_common()), basis_of(costs))
+
+
+def basis_of(tasks: Iterable[Task]) -> str:
+    """What the costs of tasks follow from, in words."""
+    known = [one.wall_time().runs > 0 for one in tasks if isinstance(one, CaseRun)]
+    if not any(known):
+        return "by rule of thumb"
+    if all(known):
+        return "as runs of the same kinds took on this machine"
+    return (
+        f"as runs of the same kinds took on this machine, {len(known) - sum(known)} of {len(known)} by rule "
+        "of thumb"
+    )
 
 
 def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:

@@ -136,7 +136,7 @@ def make(
             done = results.found.get(name, {})
             with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
                 wanted = study.part(name).tasks(own)
-                if own is not plan and (seconds := sum(one.cost() for one in wanted)) > longest:
+                if own is not plan and (seconds := sum(one.cost_by_rule() for one in wanted)) > longest:
                     too_long[name] = seconds
                 tasks[name] = [one for one in wanted if one not in done]
         left = [name for name in left if name not in too_long]

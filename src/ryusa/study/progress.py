@@ -64,6 +64,7 @@ class ProgressLines(StudyProgress):
     def begin(self, ahead: CostEstimate, folder: Path) -> None:
         """Print the estimated cost and open the bar."""
         self._costs, self._jobs, self._folder = dict(ahead.costs), ahead.jobs, folder
+        self._finished = 0  # a study that asks for more runs begins again with these
         self._total = len(ahead.costs) + len(ahead.there)
         if not self._total:
             return
@@ -121,6 +122,7 @@ class ProgressLines(StudyProgress):
         """Close the bar."""
         if self._task is not None:
             self._bar.stop()
+            self._bar.remove_task(self._task)
             self._task = None
 
     def left(self) -> float:

@@ -136,7 +136,7 @@ def _slurm_cluster(
     from dask import config
     from dask_jobqueue.slurm import SLURMCluster
 
-    costs = [one.cost() for one in tasks]
+    costs = [one.cost_by_rule() for one in tasks]  # the nodes are other machines
     seconds = max(max(costs, default=0.0), sum(costs) / jobs)
     minutes = max(SHORTEST, math.ceil(LATE * seconds / 60.0))
     memory = memory_of(tasks)

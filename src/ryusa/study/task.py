@@ -23,14 +23,8 @@ from ryusa.spelling import nearest_word
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
     from ryusa.casefile.derive import Derived
+    from ryusa.casefile.wall_time import WallTime
 
-# Corrections to the estimate for a single run, from the 639 runs of the standard level of the paper's ledger,
-# seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, estimated as 46; for one
-# set-up the estimate is right within a factor of 1.6. The shares are shares of steps and do not depend on the
-# machine.
-_TO_REST = 0.63  # share of the maximum time that a run takes which may end at rest
-_TO_HOPS = 0.80  # the same for a run which may end after a number of hops
-_ROLLING = 1.8  # cost with rolling friction over that without, in the same heap; 1.5 to 2.1
 _BEGIN = 0.14  # s to start, open and measure a short run in a process that has compiled its code
 
 _NUMBERS = "numbers.npz"  # of a calculation
@@ -51,7 +45,11 @@ class Task(Protocol):
         ...
 
     def cost(self) -> float:
-        """Estimated core seconds."""
+        """Estimated core seconds, as such runs took on this machine."""
+        ...
+
+    def cost_by_rule(self) -> float:
+        """Estimated core seconds by the rule of thumb alone: the same on every machine."""
         ...
 
     def disk(self) -> int:
@@ -125,16 +123,22 @@ class CaseRun(Task):
         return dict(self.overrides).get(key, default)
 
     def cost(self) -> float:
-        """Estimated core seconds of the run."""
-        from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
+        """Estimated core seconds of the run, as runs of its kind took on this machine."""
+        return _BEGIN + self.wall_time().stepping
+
+    def cost_by_rule(self) -> float:
+        """Estimated core seconds of the run by the rule of thumb."""
+        from ryusa.casefile.wall_time import wall_time_by_rule
 
         any_seed = self._of_any_seed()
-        case = any_seed.read()
-        share = (
-            _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
-        )
-        law = 1.0 if case.rolling.model == "none" else _ROLLING
-        return _BEGIN + share * law * (seconds_needed(case, any_seed.derive()) - SECONDS_PER_RUN)
+        return _BEGIN + wall_time_by_rule(any_seed.read(), any_seed.derive()).stepping
+
+    def wall_time(self) -> "WallTime":
+        """Wall time that the run is expected to take on this machine."""
+        from ryusa.casefile.wall_time import wall_time
+
+        any_seed = self._of_any_seed()
+        return wall_time(any_seed.read(), any_seed.derive())
 
     def disk(self) -> int:
         """Estimated size of the run [bytes]."""
@@ -286,6 +290,10 @@ class Calculation(Task):
         return " ".join((self._name, *(str(value) for _, value in self.arguments)))
 
     def cost(self) -> float:
+        """Estimated core seconds."""
+        return self.seconds
+
+    def cost_by_rule(self) -> float:
         """Estimated core seconds."""
         return self.seconds
 

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import fill_cells
+from ryusa.casefile.contact.fastest_impacts import overlaps_expected
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import adhesion, deepest_overlap, is_hertz, overlap_under
+from ryusa.casefile.contact.values import adhesion, is_hertz, overlap_under
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import water_speed
 from ryusa.laws.families import Adhesion
@@ -22,16 +23,11 @@ SKIMMING = 0.3  # u t/d beyond which grains pass each other before the collision
 def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Overlap and travel to expect within one contact."""
     speed, origin = expected_speed(case)
-    rows = [number("impact", "expected impact speed", speed, "m/s", origin), _overlap(case, derived, speed)]
-    if isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
-        layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
-        weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
-        rest = overlap_under(case, weight) / derived.d
+    rest, at_rest = _at_rest(case, derived)
+    rows = [number("impact", "expected impact speed", speed, "m/s", origin), _overlap(case, derived, rest)]
+    if at_rest:
         deep: Flag = "warning" if rest > STABLE[1] else ""
-        what = "by Hertz" if is_hertz(case) else "over k_n d"
-        origin = f"weight of {layers:g} layers {what}"
-        origin += "" if adhesion(case) is Adhesion.NONE else ", with adhesion"
-        rows.append(number("impact", "overlap/d at rest", rest, "-", origin, deep))
+        rows.append(number("impact", "overlap/d at rest", rest, "-", at_rest, deep))
     along, where = _speed_along(case, derived)
     if along > 0.0:
         travel = along * derived.fixed.t_col / derived.d
@@ -45,18 +41,34 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def _overlap(case: "Case", derived: "Derived", speed: float) -> ExplainRow:
-    overlap = deepest_overlap(case, speed) / derived.d
+def _at_rest(case: "Case", derived: "Derived") -> tuple[float, str]:
+    """Overlap over d of the lowest layer at rest [-], and where it comes from; 0 where there is none."""
+    if not isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
+        return 0.0, ""
+    layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
+    weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
+    origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case) else 'over k_n d'}"
+    origin += "" if adhesion(case) is Adhesion.NONE else ", with adhesion"
+    return overlap_under(case, weight) / derived.d, origin
+
+
+def _overlap(case: "Case", derived: "Derived", rest: float) -> ExplainRow:
+    least, most, origin = overlaps_expected(case, derived)
+    if rest > most:
+        least, most, origin = rest, rest, "more at rest than in impacts"
     stiff, (low, high) = "Young's modulus" if is_hertz(case) else "k_n", STABLE
     verdict, flag = f"in the stable range {low:g} to {high:g}", ""
-    if overlap > high:
+    if least > high:
         verdict, flag = f"above the stable range {low:g} to {high:g}; take a larger {stiff}", "warning"
-    elif overlap < low:
+    elif most > high:
+        verdict, flag = f"may rise above the stable range {low:g} to {high:g}; see overlap/d of a run", "note"
+    elif most < low:
         verdict, flag = (
             f"below the range {low:g} to {high:g}; a smaller {stiff} would allow a longer step",
             "note",
         )
-    return number("impact", "largest overlap/d", overlap, "-", f"on a fixed grain: {verdict}", flag)
+    shown = f"{most:.3g}" if least == most else f"{least:.2g} to {most:.2g}"
+    return ExplainRow("impact", "largest overlap/d", most, "", shown, f"{origin}: {verdict}", flag)
 
 
 def _speed_along(case: "Case", derived: "Derived") -> tuple[float, str]:

@@ -221,14 +221,6 @@ def largest_overlap(case: "Case", speed: float) -> float:
     return collision.overlap_max(speed, one.m, stiffness(case)[0], one.zeta_n)
 
 
-def deepest_overlap(case: "Case", speed: float) -> float:
-    """Largest overlap of a mean grain that hits a fixed one [m], with adhesion."""
-    if adhesion(case) is Adhesion.NONE:
-        return largest_overlap(case, speed)
-    d = sizes(case)[0]
-    return largest_overlap_of(law_of(case), pair_values(case, d, False).m, 0.25 * d, speed)
-
-
 def overlap_under(case: "Case", load: float) -> float:
     """Overlap of a mean grain on a fixed one under a load [N] at rest, with adhesion [m]."""
     if adhesion(case) is not Adhesion.NONE:

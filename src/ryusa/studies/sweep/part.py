@@ -62,6 +62,10 @@ class SweepRun(CaseRun):
         """Estimated core seconds of the run, with its page."""
         return super().cost() + self.page_cost
 
+    def cost_by_rule(self) -> float:
+        """Estimated core seconds by the rule of thumb, with its page."""
+        return super().cost_by_rule() + self.page_cost
+
     @property
     def page_cost(self) -> float:
         """Estimated core seconds to measure it and write its page."""
