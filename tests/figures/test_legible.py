@@ -104,10 +104,10 @@ def test_the_account_keeps_its_width_beside_a_long_legend() -> None:
 @pytest.mark.parametrize(
     ("largest", "numbers", "unit"),
     [
-        (2.4e-4, "2", r"($10^{-4}$ kg)"),
+        (2.4e-4, "2.0", r"($10^{-4}$ kg)"),
         (0.4, "0.20", "(kg)"),
-        (0.011, "1", r"($10^{-2}$ kg)"),
-        (3.0e6, "3", r"($10^{6}$ kg)"),
+        (0.011, "1.0", r"($10^{-2}$ kg)"),
+        (3.0e6, "3.0", r"($10^{6}$ kg)"),
     ],
 )
 def test_small_and_large_numbers_have_their_power_of_ten_at_the_unit(
@@ -127,7 +127,7 @@ def test_small_and_large_numbers_have_their_power_of_ten_at_the_unit(
     assert axes.get_ylabel() == f"mass  {unit}"
     assert numbers in [one.get_text() for one in axes.get_yticklabels()]
     assert axes.get_xlabel() == ""
-    assert axes.yaxis.get_offset_text().get_text() == ""
+    assert axes.yaxis.get_offset_text().get_visible() == (largest == 0.4)
 
 
 def test_a_number_without_a_unit_gets_the_power_alone() -> None:

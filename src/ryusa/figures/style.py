@@ -18,7 +18,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.ticker import (
-    FuncFormatter,
     LogLocator,
     MaxNLocator,
     NullFormatter,
@@ -98,8 +97,8 @@ def house(draw: Drawing) -> Drawing:
             figure = draw(*args, **how)
             for axes in figure.axes:
                 for one in (axes, *axes.child_axes):
-                    _power_in_label(one.xaxis)
-                    _power_in_label(one.yaxis)
+                    _power_in_label(figure, one.xaxis)
+                    _power_in_label(figure, one.yaxis)
             return figure
 
     return cast(Drawing, styled)
@@ -165,28 +164,33 @@ def log_ticks(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def _power_in_label(axis: Axis) -> None:
+def _power_in_label(figure: Figure, axis: Axis) -> None:
     """Move the power of ten of small or large numbers to the unit: 0.00025 kg is then 2.5 at (10^-4 kg)."""
-    label = axis.get_label_text()
-    if not label or type(axis.get_major_formatter()) is not ScalarFormatter:
+    label, shown = axis.get_label_text(), axis.get_major_formatter()
+    if not label or type(shown) is not ScalarFormatter or not axis.get_offset_text().get_visible():
         return
-    low, high = sorted(axis.get_view_interval())
-    at = [float(one) for one in axis.get_majorticklocs() if low <= one <= high]
+    at = _numbers(axis)
     largest = max(map(abs, at), default=0.0)
+    if SMALL <= largest < 10.0 * FINE:  # how many numbers there are depends on the room they have
+        figure.draw_without_rendering()
+        at = _numbers(axis)
     fine = len(at) > 1 and largest < 10.0 * FINE and at[1] - at[0] < FINE
     if largest == 0.0 or (SMALL <= largest < LARGE and not fine):
         return
     power = math.floor(math.log10(largest) + 1.0e-9)
-
-    def number(value: float, _place: int | None) -> str:
-        return f"{value * 10.0**-power:.5g}".replace("-", "\N{MINUS SIGN}")
-
-    axis.set_major_formatter(FuncFormatter(number))
+    shown.set_powerlimits((power, power))
+    axis.get_offset_text().set_visible(False)
     unit = re.search(r"\(([^()]*)\)$", label)
     named = unit[1] if unit and unit[1] != "–" else ""
     axis.set_label_text(
         f"{label[: unit.start()] if unit else label + '  '}($10^{{{power}}}${' ' if named else ''}{named})"
     )
+
+
+def _numbers(axis: Axis) -> list[float]:
+    """Places of the numbers beside an axis, ascending."""
+    low, high = sorted(axis.get_view_interval())
+    return [float(one) for one in axis.get_majorticklocs() if low <= one <= high]
 
 
 def legend_above(axes: Axes, columns: int, **how: Any) -> Legend:
@@ -199,19 +203,6 @@ def side_label(figure: Figure, text: str) -> None:
     """Label the left side of a figure, in two lines where it is too low for one."""
     fits = len(text.replace("$", "")) <= LETTERS * figure.get_figheight()
     figure.supylabel(text if fits else text.replace("above ", "above\n"), fontsize=8.0)
-
-
-def label_panel(axes: Axes, text: str) -> None:
-    """Write the letter of a panel into its upper left corner."""
-    axes.annotate(
-        text,
-        (0, 1),
-        xytext=(3, -3),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        va="top",
-        weight="bold",
-    )
 
 
 def note(figure: Figure, text: str) -> None:

@@ -133,7 +133,7 @@ def tracks_side_by_side(
     top = max(float(z.max()) for z in shown) + 0.8 * d
     bottom = min((float(one.bed_z.min()) for one in runs if len(one.bed_z)), default=0.0) - 0.1 * d
     row = (style.PAGE - 0.6) * (top - bottom) / length
-    figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.1), sharex=True)
+    figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.25), sharex=True)
     for panel, (name, one) in zip(axes, found.items(), strict=True):
         start = (
             math.floor(float(one.x[0, 0]) / d) * d
@@ -146,7 +146,7 @@ def tracks_side_by_side(
         panel.set_ylim(bottom * scale, top * scale)
         panel.set_aspect("equal")
         panel.locator_params(axis="y", nbins=min(_ticks(row), 4), integer=True)
-        style.label_panel(panel, name)
+        panel.set_title(name, loc="left", fontsize=7.5, weight="bold", pad=2.0)
     if any(_far(one).any() for one in runs):
         axes[0].set_title(DASHED, loc="right", fontsize=6.5)
     axes[-1].set_xlabel(f"distance along the bed  $x$  ({unit})")
