@@ -158,7 +158,9 @@ def test_a_table_of_segments_stays_short_and_says_what_it_leaves_out(n: int, lis
 def test_a_run_whose_process_was_killed_is_called_so_on_every_page(tmp_path: Path) -> None:
     folder = saltation(tmp_path / "killed").folder
     written = json.loads((folder / "provenance.json").read_text())
-    (folder / "provenance.json").write_text(json.dumps(written | {"status": "running"}))  # as kill -9 leaves it
+    (folder / "provenance.json").write_text(
+        json.dumps(written | {"status": "running"})
+    )  # as kill -9 leaves it
     found = Results.open(folder)
     assert found.status == "running"  # what the folder says, and what is true of it
     assert contents(found).status == "killed"
