@@ -1,3 +1,4 @@
+import json
 import re
 from pathlib import Path
 
@@ -14,8 +15,10 @@ from ryusa.measure.long_section import LongSection
 from ryusa.report.contents import RunContents, _of_segments, contents_of
 from ryusa.report.page import differing, report_page, side_by_side
 from ryusa.results import Results
+from ryusa.running.lock import locked
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
+from ryusa.view.page import view_page
 
 SCRIPT = "</script><script>alert(1)</script><img src=x onerror=alert(2)>"
 
@@ -150,3 +153,17 @@ def test_a_table_of_segments_stays_short_and_says_what_it_leaves_out(n: int, lis
     table = _of_segments(entry, found)
     assert len(table.rows) == listed <= 24
     assert any(f"all {n}" in note for note in table.notes) == (listed < n)
+
+
+def test_a_run_whose_process_was_killed_is_called_so_on_every_page(tmp_path: Path) -> None:
+    folder = saltation(tmp_path / "killed").folder
+    written = json.loads((folder / "provenance.json").read_text())
+    (folder / "provenance.json").write_text(
+        json.dumps(written | {"status": "running"})
+    )  # as kill -9 leaves it
+    found = Results.open(folder)
+    assert found.status == "running"  # what the folder says, and what is true of it
+    assert contents(found).status == "killed"
+    assert 'status": "killed"' in view_page(found)
+    with locked(folder):
+        assert contents(found).status == "running"

@@ -32,7 +32,7 @@ def cone(found: Cone) -> Figure:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("distance from the axis  (cm)")
     axes.set_ylabel("height above the floor  (cm)")
-    axes.legend(fontsize=6.0, loc="lower left")
+    style.legend_above(axes, 4, fontsize=6.0, columnspacing=1.2)
     axes.annotate(
         f"{math.degrees(found.angle):.1f}° ± {math.degrees(found.error):.1f}°", (1, 1), (0, 4),
         xycoords="axes fraction", textcoords="offset points", ha="right",

@@ -28,7 +28,7 @@ WORK = {
 @style.house
 def energy(found: Energy) -> Figure:
     """Draw the energy held (above), and supplied and lost (below); terms that stay zero are left out."""
-    figure, (held, flow) = style.new(2, width=4.8, height=4.9, sharex=True)
+    figure, (held, flow) = style.new(2, width=style.PAGE, height=4.3, sharex=True)
     unit, name = _prefix(found)
     for term, values in _alive(found.held):
         base = values[0] if term == "potential" else 0.0
@@ -44,17 +44,13 @@ def energy(found: Energy) -> Figure:
         color="black",
         lw=0.8,
         ls=":",
-        label=f"imbalance, at most {found.residual:.1e} of the largest term",
+        label=f"imbalance, at most\n{found.residual:.1e} of the largest term",
     )
     for axes, text in ((held, f"held  ({name})"), (flow, f"supplied (+), lost (–)  ({name})")):
         axes.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
         axes.set_ylabel(text)
         axes.margins(x=0.0)
-    for axes, columns in ((held, 3), (flow, 2)):
-        axes.legend(
-            loc="lower left", fontsize=5.8, bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2,
-            labelspacing=0.3, columnspacing=1.0,
-        )  # fmt: skip
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.3, labelspacing=0.4)
     flow.set_xlabel("time  $t$  (s)")
     return figure
 

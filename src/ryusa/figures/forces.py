@@ -104,7 +104,7 @@ def _newtons(force: float) -> str:
 
 def _caption(found: ContactNetwork, largest: float) -> list[str]:
     """How many contacts are shown, where, how their forces were had, and the largest."""
-    lines = [f"{len(found.i)} contacts"]
+    lines = [f"{len(found.i)} contact{'s' * (len(found.i) != 1)}"]
     if found.slice_y is not None:
         low, high = (f"{CM * one:.3g}" for one in found.slice_y)
         lines[0] += f" that touch in slice {found.slice} of {found.slices}, $y$ = {low} to {high} cm"

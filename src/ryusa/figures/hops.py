@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 from ryusa.figures import style
 from ryusa.measure import Saltation
 
+LEAST = 0.1  # diameters that the axes show at least: a grain that falls straight goes no way
+
 
 @style.house
 def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
@@ -24,7 +26,7 @@ def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
         (panels[1], "length", "jump length  $\\ell/d$  (–)"),
     ):
         largest = max((float(one.hops[field].max()) for one in runs.values() if len(one.hops)), default=d) / d
-        edges = np.linspace(0.0, max(largest * 1.001, 1e-6), 21).tolist()
+        edges = np.linspace(0.0, max(largest * 1.001, LEAST), 21).tolist()
         for k, (name, one) in enumerate(runs.items()):
             values = one.hops[field] / d
             if len(values) == 0:
@@ -39,14 +41,14 @@ def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
         axes.set_xlim(0.0, None)
         axes.set_ylim(0.0, None)
     panels[0].set_ylabel("share of hops  (–)")
-    panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, ncols=3)
+    style.legend_above(panels[0], 3)
     return figure
 
 
 @style.house
 def contact_times(found: Saltation) -> Figure:
     """Draw the distribution of bed contact times over Eq. (8), with its damped form."""
-    figure, (axes,) = style.new(height=2.3)
+    figure, (axes,) = style.new(height=2.6)
     ratio = found.contact_time / found.times.eq_8
     if len(ratio):
         axes.hist(ratio, 60, color=style.COLOURS[0], alpha=0.75, lw=0)
@@ -59,5 +61,5 @@ def contact_times(found: Saltation) -> Figure:
     axes.axvline(damped, color="black", lw=0.8, ls=":", label=f"{text} {damped:.3f}")
     axes.set_xlabel("contact time over Eq. (8) of the dry grain  (–)")
     axes.set_ylabel("number of bed contacts")
-    axes.legend(loc="best", fontsize=6.5)
+    style.legend_above(axes, 1, fontsize=6.5)
     return figure

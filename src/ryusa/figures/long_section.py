@@ -19,6 +19,7 @@ WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
 SHARE = 0.995  # of the values that a colour scale covers
+SAID = {"bed": "rise of the bed", "transport": "grains $q_s$"}
 TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
 MOST = 0.9
 CALM = 0.98  # of the energy line that its axis covers: that of thin fast films would dwarf all else
@@ -46,7 +47,7 @@ def long_section(
     """
     panels = 3 if found.grains else 2
     figure, axes = style.new(
-        panels, width=style.PAGE, height=height or (3.7 if panels == 2 else 4.7), sharex=True,
+        panels, width=style.PAGE, height=height or (3.8 if panels == 2 else 4.8), sharex=True,
         gridspec_kw={"height_ratios": (2.4, 1.0, 1.0)[:panels]},
     )  # fmt: skip
     every = (found, *among)
@@ -95,8 +96,7 @@ def _note_exaggeration(figure: Figure, axes: Axes, scale: float) -> None:
     axes.annotate(
         f"heights {times:.2g} times exaggerated" if times >= 1.05 else "to scale" if times > 0.95
         else f"heights drawn {times:.2g} times as large as lengths",
-        (0, 1), (4, -13), xycoords="axes fraction", textcoords="offset points", va="top",
-        fontsize=style.NOTE_SIZE,
+        (0, 1), (0, 3), xycoords="axes fraction", textcoords="offset points", fontsize=style.NOTE_SIZE,
     )  # fmt: skip
 
 
@@ -153,14 +153,14 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     for k, (at, part) in enumerate(zip(np.split(x, steps), np.split(flows, steps), strict=True)):
         axes.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
     axes.set_ylabel(f"elevation  ({unit})")
-    axes.set_ylim(low - 0.12 * span, low + 1.25 * span)
-    axes.legend(loc="upper right", ncols=4, fontsize=6.5)
+    axes.set_ylim(low - 0.12 * span, low + 1.05 * span)
+    style.legend_above(axes, 4, loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=6.5)
     if not timed:
         return
     begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "
     axes.annotate(
-        f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction",
-        textcoords="offset points", va="top", fontsize=7.0,
+        f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (0, 12), xycoords="axes fraction",
+        textcoords="offset points", fontsize=7.0,
     )  # fmt: skip
 
 
@@ -212,7 +212,8 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
     Parameters
     ----------
     found : a history.
-    quantity : only "depth", with a line where the flow is critical, "bed" or "transport"; default all.
+    quantity : only "depth", with a line where the flow is critical, "bed" or "transport"; default all that
+        are not zero throughout.
 
     Raises
     ------
@@ -223,7 +224,7 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
         known_word(quantity, QUANTITIES, "quantity")
     if quantity not in {None, "depth"} and not found.grains:
         raise ResultsError(f"the run has water alone; --quantity {quantity} needs grains")
-    shown = (quantity,) if quantity else QUANTITIES[: 3 if found.grains else 1]
+    shown = (quantity,) if quantity else _not_zero(found)
     wide = 4.8 if len(shown) == 1 else style.PAGE
     figure, axes = style.new(1, len(shown), width=wide, height=3.4, sharey=True)
     draw = {"depth": _depth, "bed": _bed_change, "transport": _transport}
@@ -233,7 +234,16 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
             panel.axvspan(first, end, ymax=0.02, color=GROUND, lw=0.0)
         panel.set_xlabel("distance along the row  $x$  (m)" if len(shown) == 1 else "$x$  (m)")
     axes[0].set_ylabel("time  $t$  (s)")
+    left_out = [one for one in QUANTITIES if found.grains and not quantity and one not in shown]
+    if left_out:
+        style.note(figure, f"zero throughout and not drawn: {', '.join(SAID[one] for one in left_out)}")
     return figure
+
+
+def _not_zero(found: DepthHistory) -> tuple[str, ...]:
+    """The depth, and of what the grains do all that is not zero throughout."""
+    changes = {"bed": found.bed_change, "transport": found.solid_discharge} if found.grains else {}
+    return ("depth", *(name for name, values in changes.items() if np.nan_to_num(values).any()))
 
 
 def _map(
@@ -252,9 +262,12 @@ def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
     scale, unit = _lengths(np.append(found.depth, 0.0))
     shown = np.where(found.depth > THIN, found.depth, np.nan) * scale
     _map(figure, axes, found, shown, f"depth  ({unit})", side, cmap="Blues", vmin=0.0)
-    filled = np.nan_to_num(found.froude)
-    if len(found.t) > 1 and len(found.x) > 1 and filled.min() < 1.0 < filled.max():
-        axes.contour(found.x, found.t, filled, levels=[1.0], colors=LINE, linewidths=0.8)
+    over_dams = np.any([(found.x > first) & (found.x < end) for _, first, end in found.dams], axis=0)
+    flowing = np.ma.masked_invalid(
+        np.where(over_dams, np.nan, found.froude)
+    )  # no line along a dam or a shore
+    if len(found.t) > 1 and len(found.x) > 1 and flowing.count() and flowing.min() < 1.0 < flowing.max():
+        axes.contour(found.x, found.t, flowing, levels=[1.0], colors=LINE, linewidths=0.8)
         axes.plot([], [], color=LINE, lw=0.8, label="Froude number 1")
         axes.legend(loc="upper left", fontsize=6.5, frameon=True, framealpha=0.9, edgecolor="none")
 

@@ -38,6 +38,5 @@ def passages(found: Passages) -> Figure:
     for one in axes:
         one.set_xlim(begin, end)
         one.set_ylim(bottom=0.0)
-        one.ticklabel_format(axis="y", style="sci", scilimits=(-2, 4))
     axes[-1].set_xlabel("time  $t$  (s)")
     return figure

@@ -90,7 +90,7 @@ def _bed(axes: Axes, one: Profiles, scale: float) -> None:
 
     The axis stays that of the moving grains, which may be few: the bed then ends at its right edge.
     """
-    if np.isfinite(one.bed).any():
+    if np.nan_to_num(one.bed).any():
         right = axes.get_xlim()[1]
         edges = np.append(one.z - 0.5 * one.thickness, one.z[-1] + 0.5 * one.thickness) * scale
         axes.stairs(one.bed, edges, orientation="horizontal", fill=True, color=style.BED, alpha=0.6, zorder=0)

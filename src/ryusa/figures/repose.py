@@ -10,6 +10,7 @@ from ryusa.figures.snapshot import CM, PLAIN, grains, panel
 from ryusa.measure import HeapSurface, Snapshot
 
 AWAY = "#f4f2ee"  # grains that do not belong to the heap
+LEGEND = 0.13  # height of the legend [inch]
 FITTED, OTHER = "#D55E00", "#0072B2"
 
 
@@ -21,18 +22,13 @@ def surface(seen: Snapshot, found: HeapSurface) -> Figure:
     ----------
     seen, found : `measure.snapshot` and `measure.surface` of the same moment.
     """
-    figure, axes = panel(seen)
+    figure, axes = panel(seen, LEGEND)
     colours = np.where(np.isin(seen.grains, found.grains), PLAIN, AWAY)
     grains(axes, seen, colours)
     if math.isfinite(found.angle):
         for share in found.fit:
             height = found.floor + share * (found.crest - found.floor)
-            axes.axhline(height * CM, color=style.FAINT, lw=0.5, ls=":", zorder=3)
-            axes.annotate(
-                f"{share:g} of the height", (1, height * CM), (-3, 1.5),
-                xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=5.5,
-                color=style.FAINT, annotation_clip=False,
-            )  # fmt: skip
+            axes.axhline(height * CM, color=style.FAINT, lw=0.5, ls=":", zorder=3, label=_fit(found))
     axes.axhline(found.floor * CM, color="black", lw=0.5, ls="--", zorder=3)
     for inside, colour, name in ((False, OTHER, "surface"), (True, FITTED, "in the fit")):
         chosen = found.inside == inside
@@ -43,17 +39,23 @@ def surface(seen: Snapshot, found: HeapSurface) -> Figure:
     axes.plot(found.line[:, 0] * CM, found.line[:, 1] * CM, color=FITTED, lw=1.4, zorder=4)
     axes.plot([found.toe * CM], [found.floor * CM], "^", color="black", ms=3.5, ls="none", zorder=5,
               clip_on=False, label="toe")  # fmt: skip
+    names = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
     axes.legend(
-        loc="center right" if found.side == "right" else "center left",
-        fontsize=5.8,
-        handletextpad=0.2,
-        labelspacing=0.25,
-    )
+        names.values(), names.keys(), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(names),
+        fontsize=5.8, handletextpad=0.2, columnspacing=0.8, handlelength=1.2, borderpad=0.0,
+        borderaxespad=2.4,
+    )  # fmt: skip
     axes.annotate(
         _words(found), (1, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", ha="right",
         fontsize=7.0,
     )  # fmt: skip
     return figure
+
+
+def _fit(found: HeapSurface) -> str:
+    """Between which heights the slope is fitted, in words."""
+    low, high = found.fit
+    return f"{low:g} and {high:g} of the height"
 
 
 def _words(found: HeapSurface) -> str:

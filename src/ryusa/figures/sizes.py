@@ -27,7 +27,7 @@ def sizes(found: Sizes) -> Figure:
     steps = np.concatenate([[0.5 * low], found.d, [2.0 * high]]) * MM
     axes.stairs(
         100.0 * passed, steps, baseline=None, color=style.COLOURS[0], lw=1.2, zorder=3,
-        label=f"laid, {len(found.d):,} grains",
+        label=f"laid, {len(found.d):,} grain{'s' * (len(found.d) != 1)}",
     )  # fmt: skip
     laid = found.laid
     for share in NAMED:
@@ -42,5 +42,5 @@ def sizes(found: Sizes) -> Figure:
     style.log_ticks(axes.xaxis)
     axes.set_xlabel("diameter  (mm)")
     axes.set_ylabel("finer by mass  (%)")
-    axes.legend(loc="lower right")
+    style.legend_above(axes, 2)
     return figure

@@ -15,12 +15,14 @@ from matplotlib.patches import Polygon
 from ryusa.figures import style
 from ryusa.measure import Bounds, Snapshot
 from ryusa.measure.repose import STILL, G
+from ryusa.model.scene import Floats
 
 CM = 100.0  # centimetres in a metre
 WET, SURFACE = "#e8f1f8", "#0072B2"  # water, and its surface
 PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
 EDGE = "#6f695f"  # of planes and walls
 WIDE = 2.2  # ratio of the sides above which a picture is two columns wide
+LEVEL = 1.0e-4  # angle up to which the x axis is level [rad]
 SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
 BAR = 0.065  # height of the colour bar [inch]
 AROUND, ABOVE = 0.62, 0.16  # height of labels around the panel, and of a colour bar with its ticks [inch]
@@ -69,17 +71,23 @@ def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> t
     axes.set_xlim(box[0] * CM, box[1] * CM)
     axes.set_ylim(box[2] * CM, box[3] * CM)
     axes.set_aspect("equal")
-    axes.set_xlabel("$x$  (cm)")
-    axes.set_ylabel("$z$ above datum  (cm)")
+    inclined = abs(seen.fall) > LEVEL
+    falls = f", falls by {math.degrees(seen.fall):.3g}°" if inclined else ""
+    axes.set_xlabel(f"$x${falls}  (cm)")
+    axes.set_ylabel("$z$ normal to $x$  (cm)" if inclined else "$z$ above datum  (cm)")
     axes.tick_params(top=False, right=False)
     text = f"$t$ = {seen.t:.4g} s" + (f", lane {seen.lane} of {seen.lanes}" if seen.lanes > 1 else "")
     axes.annotate(text, (0, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", fontsize=7.0)
     if math.isfinite(seen.surface):
         _water(axes, seen.surface, box)
+    if len(seen.along_row):
+        _row(axes, seen.along_row)
     planes(axes, seen.plane_point, seen.plane_normal, box, CM)
     if len(seen.wall_lines):
-        edges = [*(CM * seen.wall_lines[:, :, [0, 2]])]
-        axes.add_collection(LineCollection(edges, colors=EDGE, lw=0.9, zorder=0.6))
+        edges, y = CM * seen.wall_lines[:, :, [0, 2]], seen.wall_lines[:, :, 1].max(axis=1)
+        before = y <= seen.x[:, 1].min(initial=math.inf)  # as seen along y
+        for chosen, zorder in ((~before, 0.6), (before, 2.5)):
+            axes.add_collection(LineCollection([*edges[chosen]], colors=EDGE, lw=0.9, zorder=zorder))
     circles(axes, seen.bed_x, seen.bed_d, style.BED, "#8c8578", period=seen.period)
     return figure, axes
 
@@ -95,6 +103,19 @@ def _water(axes: Axes, surface: float, box: Box) -> None:
     axes.axhspan(low, high, color=WET, lw=0.0, zorder=0.2)
     axes.axhline(high, color=SURFACE, lw=0.8, zorder=0.4)
     axes.plot([x], [high], marker=7, ms=4.5, color=SURFACE, mew=0.0, zorder=3.0)  # with its tip on the line
+
+
+def _row(axes: Axes, along: Floats) -> None:
+    """Shade the water and the dams of a row of columns, and draw its surface."""
+    x, bottom, floor, surface = (CM * along).T
+    wet = np.isfinite(surface)
+    axes.fill_between(x, bottom, surface, where=wet.tolist(), color=WET, lw=0.0, zorder=0.2)
+    axes.plot(x, surface, color=SURFACE, lw=0.8, zorder=0.4)
+    half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.0
+    for k in np.flatnonzero(floor > bottom):
+        corners = [(x[k] - half, bottom[k]), (x[k] + half, bottom[k]), (x[k] + half, floor[k])]
+        corners.append((x[k] - half, floor[k]))
+        axes.add_patch(Polygon(np.array(corners), closed=True, fc=SOLID, ec="none", zorder=0.5))
 
 
 def circles(

@@ -1,6 +1,8 @@
 """Style of all figures: column width, thin frame, colours distinct without colour vision or in grey."""
 
 import io
+import math
+import re
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import wraps
@@ -14,7 +16,14 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+from matplotlib.legend import Legend
+from matplotlib.ticker import (
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    ScalarFormatter,
+    StrMethodFormatter,
+)
 
 from ryusa.figures.fonts import families, signs_watched
 
@@ -33,6 +42,9 @@ BED = "#b8b2a7"
 BAND = "#dfe7d8"
 FAINT = "#8a8a8a"
 NOTE_SIZE, NOTE_WIDTH = 6.0, 19.0  # of a note below a figure: letters [point], and how many go in an inch
+SMALL, LARGE = 0.01, 1.0e5  # largest number at an axis below and from which its label has a power of ten
+FINE = 0.005  # step of such numbers below which it has one too, as 0.0025 and 0.0100 would
+LETTERS = 15.0  # of a label of an axis that go in an inch
 SHORT, SHORTEST = 200.0, 4.0  # ratios of the ends of a logarithmic axis, see `log_ticks`
 
 HOUSE: Any = {
@@ -82,7 +94,12 @@ def house(draw: Drawing) -> Drawing:
     @wraps(draw)
     def styled(*args: Any, **how: Any) -> Any:
         with applied():
-            return draw(*args, **how)
+            figure = draw(*args, **how)
+            for axes in figure.axes:
+                for one in (axes, *axes.child_axes):
+                    _power_in_label(figure, one.xaxis)
+                    _power_in_label(figure, one.yaxis)
+            return figure
 
     return cast(Drawing, styled)
 
@@ -147,17 +164,45 @@ def log_ticks(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def label_panel(axes: Axes, text: str) -> None:
-    """Write the letter of a panel into its upper left corner."""
-    axes.annotate(
-        text,
-        (0, 1),
-        xytext=(3, -3),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        va="top",
-        weight="bold",
+def _power_in_label(figure: Figure, axis: Axis) -> None:
+    """Move the power of ten of small or large numbers to the unit: 0.00025 kg is then 2.5 at (10^-4 kg)."""
+    label, shown = axis.get_label_text(), axis.get_major_formatter()
+    if not label or type(shown) is not ScalarFormatter or not axis.get_offset_text().get_visible():
+        return
+    at = _numbers(axis)
+    largest = max(map(abs, at), default=0.0)
+    if SMALL <= largest < 10.0 * FINE:  # how many numbers there are depends on the room they have
+        figure.draw_without_rendering()
+        at = _numbers(axis)
+    fine = len(at) > 1 and largest < 10.0 * FINE and at[1] - at[0] < FINE
+    if largest == 0.0 or (SMALL <= largest < LARGE and not fine):
+        return
+    power = math.floor(math.log10(largest) + 1.0e-9)
+    shown.set_powerlimits((power, power))
+    axis.get_offset_text().set_visible(False)
+    unit = re.search(r"\(([^()]*)\)$", label)
+    named = unit[1] if unit and unit[1] != "–" else ""
+    axis.set_label_text(
+        f"{label[: unit.start()] if unit else label + '  '}($10^{{{power}}}${' ' if named else ''}{named})"
     )
+
+
+def _numbers(axis: Axis) -> list[float]:
+    """Places of the numbers beside an axis, ascending."""
+    low, high = sorted(axis.get_view_interval())
+    return [float(one) for one in axis.get_majorticklocs() if low <= one <= high]
+
+
+def legend_above(axes: Axes, columns: int, **how: Any) -> Legend:
+    """Set the legend above the panel, from its left edge, where it hides no data."""
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
+    return axes.legend(**(place | {"ncols": columns} | how))
+
+
+def side_label(figure: Figure, text: str) -> None:
+    """Label the left side of a figure, in two lines where it is too low for one."""
+    fits = len(text.replace("$", "")) <= LETTERS * figure.get_figheight()
+    figure.supylabel(text if fits else text.replace("above ", "above\n"), fontsize=8.0)
 
 
 def note(figure: Figure, text: str) -> None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from textwrap import fill
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,8 @@ from ryusa.model.scene import Bools, Floats
 
 MM, CM = 1.0e3, 1.0e2  # millimetres and centimetres in a metre
 TALLEST = 4.5  # height of all panels together [inch]
+CAPTION = 130  # letters in a line of the caption
+TICK = 0.15  # height that a number beside a panel needs [inch]
 STEP = 1.0  # diameters between two frames above which the path between them is not known
 DASHED = "dashed: between frames (dots) more than a diameter apart"
 LOOSE = "blue grains: free, moving less than a diameter"
@@ -77,13 +80,18 @@ def tracks(
         panel.set_xlim(low * MM, (low + span) * MM)
         panel.set_ylim(bottom * MM, top * MM)
         panel.set_aspect(exaggeration)
-        panel.locator_params(axis="y", nbins=3 if row < 1.5 else 8, integer=True)
+        panel.locator_params(axis="y", nbins=_ticks(row), integer=True)
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
-    figure.supylabel(style.height("mm"), fontsize=8.0)
+    style.side_label(figure, style.height("mm"))
     axes[0].set_title(_caption(found, around), loc="left", fontsize=6.5)
     if exaggeration != 1.0:
         axes[0].set_title(f"vertical scale exaggerated {exaggeration:g} times", loc="right", fontsize=6.5)
     return figure
+
+
+def _ticks(row: float) -> int:
+    """Most intervals between the numbers beside a panel of some height [inch]."""
+    return 8 if row >= 1.5 else max(min(int(row / TICK), 3), 1)
 
 
 def _caption(found: Tracks, around: Snapshot | None) -> str:
@@ -99,7 +107,7 @@ def _caption(found: Tracks, around: Snapshot | None) -> str:
     notes = [LOOSE] * bool(len(found.loose_x))
     notes += [HIDDEN] * (around is not None and len(around.grains) > drawn)
     notes += [DASHED] * bool(_far(found).any())
-    return "\n".join([text, *(["; ".join(notes)] if notes else [])])
+    return "\n".join([text, *([fill("; ".join(notes), CAPTION)] if notes else [])])
 
 
 def _far(found: Tracks) -> Bools:
@@ -125,7 +133,7 @@ def tracks_side_by_side(
     top = max(float(z.max()) for z in shown) + 0.8 * d
     bottom = min((float(one.bed_z.min()) for one in runs if len(one.bed_z)), default=0.0) - 0.1 * d
     row = (style.PAGE - 0.6) * (top - bottom) / length
-    figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.1), sharex=True)
+    figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.25), sharex=True)
     for panel, (name, one) in zip(axes, found.items(), strict=True):
         start = (
             math.floor(float(one.x[0, 0]) / d) * d
@@ -137,12 +145,12 @@ def tracks_side_by_side(
         panel.set_xlim(0.0, length * scale)
         panel.set_ylim(bottom * scale, top * scale)
         panel.set_aspect("equal")
-        panel.locator_params(axis="y", nbins=4, integer=True)
-        style.label_panel(panel, name)
+        panel.locator_params(axis="y", nbins=min(_ticks(row), 4), integer=True)
+        panel.set_title(name, loc="left", fontsize=7.5, weight="bold", pad=2.0)
     if any(_far(one).any() for one in runs):
         axes[0].set_title(DASHED, loc="right", fontsize=6.5)
     axes[-1].set_xlabel(f"distance along the bed  $x$  ({unit})")
-    figure.supylabel(style.height(unit), fontsize=8.0)
+    style.side_label(figure, style.height(unit))
     return figure
 
 

@@ -10,6 +10,7 @@ from ryusa.figures import style
 from ryusa.measure import Vibration, vibrating_share
 
 CM = 100.0  # centimetres in a metre
+FEW = 100  # windows up to which each has a marker
 THRESHOLDS = (1.0e-4, 1.0e-3, 1.0e-2)  # mean diameters
 
 
@@ -36,13 +37,15 @@ def vibration(
     above.axhspan(-edge, edge, color=style.BAND, lw=0)
     above.annotate(
         "±0.001 $d$", (1, edge), (-3, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
-        ha="right", fontsize=6.0, color=style.FAINT,
+        ha="right", fontsize=6.0, color=style.FAINT, zorder=4,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
     )  # fmt: skip
+    few = len(found.end) <= FEW
     for k, grain in enumerate(grains):
         column = int(np.flatnonzero(found.grains == grain)[0])
         above.plot(
-            found.end, found.net[:, column] * CM, style.MARKERS[k % 7] + "-", ms=2.2, lw=0.8, mfc="white",
-            mew=0.7, color=style.COLOURS[k % 7], label=f"grain {grain}",
+            found.end, found.net[:, column] * CM, style.MARKERS[k % 7] * few + "-", ms=2.2, lw=0.8,
+            mfc="white", mew=0.7, color=style.COLOURS[k % 7], label=f"grain {grain}",
         )  # fmt: skip
     above.set_yscale("symlog", linthresh=edge, linscale=0.8)
     low, high = above.get_ylim()

@@ -63,10 +63,8 @@ def water(found: WaterProfile) -> Figure:
             f"Not shown: water below z = {base * CM:.3g} cm, in empty pores among the fixed grains under the "
             "packed bed.", fontsize=6.3,
         )  # fmt: skip
-    place = {"loc": "upper left", "bbox_to_anchor": (0.0, 1.0 / 1.06)} if flows else {"loc": "best"}
-    speeds.legend(**place)
-    if np.isfinite(found.tau_bed):
-        stress.legend(loc="lower right" if flows else "best", fontsize=6.2)
+    for panel, columns in ((speeds, 2), (stress, 1)):
+        style.legend_above(panel, columns, loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=6.2)
     _name(amount, "surface", top, WATER, -3)
     if np.isfinite(found.bed):
         _name(amount, "bed", found.bed * CM, SAND, 3)

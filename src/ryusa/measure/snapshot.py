@@ -16,6 +16,7 @@ UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the
 SHARE = (
     0.99  # of the values that a colour scale covers: a few fast grains would leave the others in one colour
 )
+DRY = 1.0e-6  # depth up to which a segment of a row is dry [m]
 _PLACES, _FRAMES = 20_000_000, 60  # grains and frames from which bounds are taken, of not fewer frames
 
 
@@ -56,6 +57,9 @@ class Snapshot(ByShape):
     period : along x [m]; inf where open.
     surface : height of the water's surface where a column was solved [m]; nan elsewhere.
     wall_lines : ends of the edges of walls, where they are now [m], shape (n_line, 2, 3).
+    along_row : middle, bottom, floor with its dams, and surface of the water of each segment of a row of
+        columns [m], shape (n_segment, 4); the surface is nan where it is dry.
+    fall : angle by which the x axis falls downstream [rad].
     lane, lanes : number of the lane shown, in order of y, and of all lanes; 0 and 1 where there are none.
     """
 
@@ -74,12 +78,14 @@ class Snapshot(ByShape):
     lanes: int = 1
     surface: float = math.nan
     wall_lines: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    along_row: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    fall: float = 0.0
 
     @property
     def bounds(self) -> Bounds:
         """Of this moment."""
         ends = np.array([_ends(self.x, self.d)])
-        highest = self.surface if math.isfinite(self.surface) else -math.inf
+        highest = self.surface if math.isfinite(self.surface) else _highest(self.along_row, ends)
         d_max = float(self.d.max(initial=0.0))
         return _bounds(ends, self.speed, self.spin, (self.bed_x, self.bed_d), self.period, highest, d_max)
 
@@ -140,7 +146,24 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
         lanes=lanes,
         surface=math.nan if water is None else float(water.z_surface[k]),
         wall_lines=_lines_of_walls(scene, now),
+        along_row=_along_row(run, k),
+        fall=math.atan2(float(scene.gravity[0]), -float(scene.gravity[2])) if scene.gravity.any() else 0.0,
     )
+
+
+def _along_row(run: Run, k: int) -> Floats:
+    """Middle, bottom, floor and surface of each segment of a row at a frame [m]; nan where it is dry."""
+    found = getattr(run, "row", None)
+    if found is None:
+        return np.zeros((0, 4))
+    surface = np.where(found.depth[k] > DRY, found.surface[k], math.nan)
+    return np.column_stack([found.row.x, found.row.bottom, found.floor, surface])
+
+
+def _highest(along_row: Floats, ends: Floats) -> float:
+    """Highest point of water and dams of a row between the grains [m]; -inf without a row."""
+    near = (along_row[:, 0] >= ends[:, 0].min()) & (along_row[:, 0] <= ends[:, 1].max())
+    return float(np.nanmax(along_row[near, 2:], initial=-math.inf))
 
 
 def _lines_of_walls(scene: Scene, t: float) -> Floats:
@@ -176,10 +199,11 @@ def bounds(run: Run, lane: int | None = None) -> Bounds:
         speed.append(np.linalg.norm(np.asarray(run.frames.v[k])[ids][there], axis=1))
         spin.append(np.asarray(run.frames.omega[k])[ids, 1][there])
     water = getattr(run, "water", None)
-    highest = -math.inf if water is None else float(np.max(water.z_surface))
+    rows = [_along_row(run, k) for k in (0, n_frame // 2, n_frame - 1)]
+    highest = max(_highest(one, np.array(ends)) for one in rows) if water is None else water.z_surface.max()
     return _bounds(
         np.array(ends), np.concatenate(speed), np.concatenate(spin),
-        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, highest,
+        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, float(highest),
         float(scene.d[ids].max(initial=0.0)),
     )  # fmt: skip
 

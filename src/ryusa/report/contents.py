@@ -16,7 +16,7 @@ from ryusa.measure._run import settle_time
 from ryusa.measure.long_section import LongSection
 from ryusa.measure.table import ROUND_OFF
 from ryusa.results import Results, schema
-from ryusa.running.inspection import inspection_rows
+from ryusa.running.inspection import inspection_rows, state_of
 from ryusa.study.html import embedded
 from ryusa.view.page import encoded
 
@@ -93,7 +93,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     found = RunContents(
         title=str(results.case.get("title") or results.folder.resolve().name),
         folder=results.folder.resolve().name,
-        status=results.status,
+        status=state_of(results),
         complete=results.complete,
         rows=[row for row in inspection_rows(results) if row[0] not in _OWN],
     )

@@ -17,6 +17,7 @@ from ryusa.running.folder import format_bytes
 from ryusa.running.lock import holder
 
 _WIDE = 14  # columns of the heading of a line
+KILLED = "killed"
 _LONGEST = 300  # characters shown of a text from the folder
 
 
@@ -55,8 +56,16 @@ def _status(results: Results) -> str:
     message = _words(results.provenance.get("message") or "")
     if results.status != schema.RUNNING:
         return f"{_words(results.status)}: {message}" if message else _words(results.status)
-    who = holder(results.folder)
-    return f"running: {who} is writing" if who else "killed: marked as running, but no process is writing"
+    if state_of(results) == KILLED:
+        return f"{KILLED}: marked as running, but no process is writing"
+    return f"running: {holder(results.folder)} is writing"
+
+
+def state_of(results: Results) -> str:
+    """What a run is in a word: its status, or "killed" where it says running and no process writes."""
+    if results.status != schema.RUNNING or holder(results.folder):
+        return _words(results.status)
+    return KILLED
 
 
 def _case(results: Results) -> str:

@@ -19,6 +19,7 @@ from ryusa.errors import ResultsError
 from ryusa.model import Scene, Walls
 from ryusa.model.wall_shape import lines_of, triangles_of
 from ryusa.results import Results
+from ryusa.running.inspection import state_of
 from ryusa.view.box import box_of, needs_grains
 from ryusa.view.encode import Blob, add_colours, add_positions, positions, presence
 from ryusa.view.flow import flow_of
@@ -153,7 +154,7 @@ def _encode(
         "title": title,
         "folder": results.folder.resolve().name,
         "version": __version__,
-        "status": results.status,
+        "status": state_of(results),
         "t": [round(float(t), 9) for t in times],
         "frames": len(results.frames),
         "grains": scene.n_grain,
