@@ -158,14 +158,14 @@ def test_threads_engine_dimension_water_and_contacts_make_a_kind(case):
 
 def test_a_run_keeps_its_time_and_check_study_and_progress_ask_for_it(kept, tmp_path, monkeypatch):
     monkeypatch.setattr("ryusa.casefile.wall_time.LEAST", 0.0)
+    monkeypatch.setattr("ryusa.casefile.wall_time.SECONDS_PER_RUN", 0.0)  # or the clock decides what is kept
     short = {"stop.time": "0.4 s"}
     task = case_run(case_path("drop.toml"), short)
     assert basis_of([task]) == "by rule of thumb"
     case = task.read()
-    results = ryusa.run(case, tmp_path / "run", progress=False)
+    ryusa.run(case, tmp_path / "run", progress=False)
     (ratio,) = run_times.ratios_of(kind_of_run(case))
-    stepping = results.summary["wall"] - results.summary["compiled"]
-    assert ratio > 0.0 or stepping < SECONDS_PER_RUN
+    assert ratio > 0.0
     found = wall_time(case, derive(case))
     (row,) = [one for one in ryusa.casefile.explain(case) if one.name == "wall time"]
     assert row.value == found.seconds and row.origin == found.origin

@@ -112,8 +112,8 @@ def test_a_feed_owes_what_was_due_and_found_no_place(run: Any) -> None:
 
 def test_the_picture_shows_debts_only_where_there_are_any(run: Any) -> None:
     assert [one.get_ylabel() for one in drawn(passages(run)).axes] == [
-        "mass that passed  (kg)",
-        "mass owed  (kg)",
+        "mass that passed  ($10^{-5}$ kg)",
+        "mass owed  ($10^{-5}$ kg)",
     ]
     figure = drawn(passages(run, end=0.15))
     assert len(figure.axes) == 1

@@ -86,7 +86,7 @@ def test_sections_agree_with_the_closed_form(r, share, turn):
     distance = abs(a - b) + share * (a + b - abs(a - b))
     x = np.array([[0.0, 0.0, 0.0], Rotation.from_rotvec(turn).apply([distance, 0.0, 0.0])])
     body = moments_of_union(x, np.array(r))
-    total = _by_sections(x, np.array(r), _heights(x, np.array(r)), 30)
+    total = _by_sections(x, np.array(r), _heights(x, np.array(r)), 60)
     assert total[0] == pytest.approx(body.volume, rel=1e-9)
     assert total[13] == pytest.approx(body.surface, rel=1e-7)
     second = total[4:13].reshape(3, 3) - total[0] * np.outer(body.centre, body.centre)
