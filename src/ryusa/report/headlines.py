@@ -68,7 +68,8 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("*: force x, both, largest, by width", "The largest is {}.", "N/m"),
         Headline(
             "*: overturning, both, largest",
-            "The moment about its toe, positive where it overturns, is at most {}.", "N m/m", by_width=True,
+            "The largest moment of the load about its toe is {}, and overturns it where above 0.",
+            "N m/m", by_width=True,
         ),
     ),
     "walls": (Headline("*dam*: force x", "The grains push {name} downstream with {}.", "N"),),
