@@ -9,7 +9,7 @@ from ryusa.model.tally import N_TERM
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
 from ryusa.running.folder import available_memory, refuse_if_too_large
-from ryusa.running.guards import energy_created
+from ryusa.running.guards import NO_REST, energy_created
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
@@ -50,7 +50,25 @@ def test_what_a_step_gives_and_a_dashpot_takes_at_rest_under_a_load_is_no_fault(
     terms[Term.STEP], terms[Term.DASH_N] = 3.0, 3.0
     for kinetic, fails in ((1e-12, False), (1e-3, True)):
         tally = replace(account(kinetic), terms=tuple(terms))
-        assert (energy_created(scene, moving(), tally) is not None) is fails
+        rest = NO_REST.after(tally)
+        assert (energy_created(scene, moving(), tally, rest) is not None) is fails
+        assert (rest is NO_REST) is fails
+
+
+def test_after_a_rest_only_what_is_gained_since_counts(scene):
+    """Grains are drawn along once they have rested: the work is 1 J, and the step gives 0.1 or 0.9 J more."""
+    terms = [0.0] * N_TERM
+    terms[Term.STEP], terms[Term.DASH_N] = 3.0, 3.0
+    rest = NO_REST.after(replace(account(1e-12), terms=tuple(terms)))
+    for more, fails in ((0.1, False), (0.9, True)):
+        after = list(terms)
+        after[Term.STEP] += more
+        after[Term.DASH_N] += 0.5 + more
+        after[Term.SLIDE] = 0.5
+        after[Term.WALL] = 1.0
+        tally = replace(account(1e-2), terms=tuple(after))
+        assert (energy_created(scene, moving(), tally, rest) is not None) is fails
+        assert energy_created(scene, moving(), tally) is not None
 
 
 @pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])

@@ -13,7 +13,9 @@ from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_
 from ryusa.laws.families import ContactTiming
 from ryusa.model import State
 from ryusa.model.contact_law import elastic_spheres, shortest_contact_of
+from ryusa.model.tally import N_TERM
 from ryusa.running.energy_terms import energy_lines
+from ryusa.running.guards import SinceRest
 from ryusa.running.stops import HOP_RISE, RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
 from ryusa.running.watch import RunningMean, Watch, shortest_collision_time
@@ -326,3 +328,14 @@ def test_a_checkpoint_with_impossible_averages_is_refused(
     kept.values["averages"][0] = {**kept.values["averages"][0], key: value}
     with pytest.raises(CheckpointError, match="impossible mean"):
         Watch(scene, state).restore(kept)
+
+
+def test_the_account_of_the_last_rest_outlasts_a_checkpoint(scene: Any, state: Any) -> None:
+    watch, again = Watch(scene, state), Watch(scene, state)
+    watch.rest = SinceRest(0.25, 1.5, tuple(0.1 * k for k in range(N_TERM)))
+    again.restore(watch.to_block())
+    assert again.rest == watch.rest
+    older = watch.to_block()
+    del older.values["rest"]  # a checkpoint of before
+    again.restore(older)
+    assert again.rest == SinceRest()

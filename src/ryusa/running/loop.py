@@ -337,7 +337,7 @@ class Loop:
         travel = self.servo and self.servo.travel_at(self._t)
         self.recorder.frame(state, tally, self._water, travel, with_servos(self.scene, self.servo))
         self.watch.frame(tally)
-        if fault := energy_created(self.scene, state, tally):
+        if fault := energy_created(self.scene, state, tally, self.watch.rest):
             self.recorder.reached(self._step)  # the frame of the failure is recorded
             raise fault
 

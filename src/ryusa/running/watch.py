@@ -22,8 +22,9 @@ from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
 from ryusa.model.contact_law import ContactLaw, shortest_contact_of, stiffness_key
 from ryusa.model.scene import Damping
-from ryusa.model.tally import HELD
+from ryusa.model.tally import HELD, N_TERM
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.guards import NO_REST, SinceRest
 
 BAND = (0.001, 0.01)  # stable range of overlap/d, fig11 of the paper
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond it geometry ends contacts, not Eq. (8)
@@ -73,6 +74,7 @@ class Watch:
 
     def __init__(self, scene: Scene, state: State) -> None:
         self.scene = scene
+        self.rest = NO_REST  # the account when the grains last rested
         self.n_contact = 0
         self.t_col_shortest = shortest_collision_time(scene, state)
         self._g_t_col = _speed_of_weight(scene)
@@ -119,6 +121,7 @@ class Watch:
 
     def frame(self, tally: Tally) -> None:
         """Update with the account at a recorded frame."""
+        self.rest = self.rest.after(tally)
         if self.scene.n_grain and self._turned_by_water:
             # the grain is not known; the largest one gives an upper bound
             self._spins(np.array([tally.spin_max]), self.scene.d.max(keepdims=True))
@@ -235,6 +238,7 @@ class Watch:
     def to_block(self) -> CheckpointBlock:
         """All numbers so far, for a checkpoint."""
         values = {"n_contact": self.n_contact, "range": self._range, "re_spin": self._re_spin}
+        values |= {"rest": [self.rest.created, self.rest.held, *self.rest.terms]}
         values |= {"travel_most": self._travel_most, "averages": [vars(one) for one in self._averages()]}
         return CheckpointBlock(values, {"histogram": self._histogram})
 
@@ -254,6 +258,10 @@ class Watch:
                 one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
             self.n_contact, self._re_spin = int(values["n_contact"]), float(values["re_spin"])
             self._travel_most = float(values["travel_most"])
+            created, held, *terms = (float(one) for one in values.get("rest", (0.0,) * (2 + N_TERM)))
+            self.rest = SinceRest(created, held, tuple(terms))
+            if len(terms) != N_TERM:
+                raise ValueError(f"{len(terms)} terms of the account at rest")
             if not 0 <= self.n_contact <= _MOST:
                 raise ValueError("an impossible number of contacts")
             if not all(one.is_valid(self.n_contact) for one in self._averages()):
