@@ -27,10 +27,14 @@ class CaseQuestion:
 
 QUESTIONS = (
     CaseQuestion(
-        "How much bed load does my reach carry?", ("bedload_3d", "even_bed", "movable_bed", "saltation"),
+        "How much bed load does my reach carry?", ("bedload_3d", "even_bed", "movable_bed"),
         ("ryusa measure RUN transport", "ryusa sweep CASE --seeds 4"),
         "kg/s per metre of width with its error, beside Meyer-Peter & Müller and Wong & Parker",
-        ("transport", "saltation"), ("transport", "tracks"),
+        ("transport",), ("transport",),
+    ),
+    CaseQuestion(
+        "How do single grains hop along a bed?", ("saltation",), ("ryusa measure RUN saltation",),
+        "height, length and speed of the hops, contact times; no rate", ("saltation",), ("tracks",),
     ),
     CaseQuestion(
         "And in a steep or violent flow?", ("sheet_flow", "dense_3d", "dense_plane"),

@@ -45,7 +45,7 @@ class BriefAnswer:
 
 
 def answer(runs: Sequence[Results], question: CaseQuestion, begin: float | None = None) -> BriefAnswer:
-    """BriefAnswer a question by runs of one case that differ in their seed.
+    """Answer a question by runs of one case that differ in their seed.
 
     Parameters
     ----------

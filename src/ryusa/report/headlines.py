@@ -51,7 +51,7 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("tau_star", "The Shields number of the water at the bed is {}.", "-"),
     ),
     "saltation": (
-        Headline("jump_height", "There is no rate: single grains hop, and rise {}.", "mm", 1.0e3),
+        Headline("jump_height", "Grains rise by {} in a hop.", "mm", 1.0e3),
         Headline("jump_length", "A hop is {} long.", "mm", 1.0e3),
         Headline("speed", "Grains advance at {}.", "m/s"),
     ),

@@ -1,7 +1,7 @@
 """Bed load in a flume one bead wide, against the profiles that Frey 2014 measured."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
 
@@ -230,20 +230,29 @@ def pooled_water(runs: Sequence[Measured]) -> tuple[Floats, Floats]:
     return z, np.mean([np.interp(z, one["z_water"], one["u_water"]) for one in runs], axis=0)
 
 
-def rms(runs: Sequence[Measured], flume: tuple[Floats, Floats, Floats], column: int) -> Interval:
-    """Root mean square difference of the profile over all runs from that of the flume.
+Profile = tuple[Floats, Floats, Floats]  # heights [d], concentration [-] and speed of the beads [m/s]
+
+
+def rms(
+    runs: Sequence[Measured],
+    reference: Profile,
+    column: int,
+    low: float = LOW,
+    pooled: Callable[[Sequence[Measured]], Profile] = pooled_profile,
+) -> Interval:
+    """Root mean square difference of the profile over all runs from another, from a height on [d].
 
     Its square is a smooth function of means over runs (a polynomial for the concentration), so the jackknife
     removes the part that is noise between the runs, and gives the interval. A column of 1 is the
     concentration [-], 2 the speed [m/s].
     """
-    z, phi, _ = flume
-    at = np.arange(LOW, float(z[(z >= LOW) & (phi >= LEAST)].max()) + 1e-9, STEP)
-    reference = np.interp(at, z, flume[column])
+    z, phi, _ = reference
+    at = np.arange(low, float(z[(z >= low) & (phi >= LEAST)].max()) + 1e-9, STEP)
+    wanted = np.interp(at, z, reference[column])
 
     def square(some: Sequence[Measured]) -> float:
-        ours = pooled_profile(some)
-        return float(np.mean((np.interp(at, ours[0], ours[column]) - reference) ** 2))
+        ours = pooled(some)
+        return float(np.mean((np.interp(at, ours[0], ours[column]) - wanted) ** 2))
 
     found = not_negative(over_seeds(pseudo_values(square, runs), ("", "-", "m/s")[column]))
     return transformed(found, math.sqrt, found.unit, "root of the mean square, jackknife over runs")

@@ -1,7 +1,7 @@
 """Bed load over a wide bed, against the profiles that Maurin, Chauchat & Frey 2016 computed."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from io import StringIO
 
 import numpy as np
@@ -11,7 +11,7 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure import profiles, transport
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.studies.validation.frey import pooled_profile
+from ryusa.studies.validation.frey import Measured, Profile, pooled_profile, rms
 from ryusa.studies.validation.sampling import SAMPLING
 from ryusa.study import (
     Band,
@@ -28,10 +28,7 @@ from ryusa.study import (
     case_run,
     comparison,
     misfit,
-    not_negative,
     over_seeds,
-    pseudo_values,
-    transformed,
 )
 
 TITLE = "Bed load over a wide bed"
@@ -39,7 +36,7 @@ D, EXCESS, G = 6.0e-3, 1.5, 9.81  # of the case file [m], [-], [m/s2]
 SURFACE = 27.5  # height of the water over the base [d]
 LAYER = 1.0 / 12.0  # of our profiles [d]
 TOP = 0.3  # concentration at the height from which profiles are counted: the bases are not the same
-BELOW, STEP, LEAST = 4.0, 0.5, 0.01  # depth from which profiles are compared, and steps [d]; least phi
+BELOW = 4.0  # depth from which profiles are compared [d]
 SCALE = math.sqrt(EXCESS * G * D**3)
 SOURCE = Source(
     "Maurin, Chauchat & Frey 2016 (J. Fluid Mech. 804, 490), run r2d6s2, YADE, as given with a later study",
@@ -56,7 +53,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     return [case_run(case_path("validation/maurin.toml"), time, seed=seed) for seed in sampling.seeds(plan)]
 
 
-def published() -> tuple[Floats, Floats, Floats]:
+def published() -> Profile:
     """Heights over the base [d], concentration [-] and speed of the beads [m/s]."""
     text = case_path("validation/maurin_2016.csv").read_text(encoding="utf-8")
     table = np.genfromtxt(StringIO(text), delimiter=",", comments="#", skip_header=4)
@@ -87,29 +84,17 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     }  # fmt: skip
 
 
-Measured = Mapping[str, Floats | float]
-
-
-def _from_top(z: Floats, phi: Floats, u: Floats) -> tuple[Floats, Floats, Floats]:
+def _from_top(z: Floats, phi: Floats, u: Floats) -> Profile:
     return z - top(z, phi), phi, u
 
 
-def rms(runs: Sequence[Measured], column: int) -> Interval:
-    """Root mean square difference from the published profile, both counted from the top of the bed.
+def _pooled(runs: Sequence[Measured]) -> Profile:
+    return _from_top(*pooled_profile(runs))
 
-    A column of 1 is the concentration [-], 2 the speed [m/s]. The jackknife over runs removes the part that
-    is noise between them, and gives the interval.
-    """
-    z, phi, _ = reference = _from_top(*published())
-    at = np.arange(-BELOW, float(z[phi >= LEAST].max()) + 1e-9, STEP)
-    theirs = np.interp(at, z, reference[column])
 
-    def square(some: Sequence[Measured]) -> float:
-        ours = _from_top(*pooled_profile(some))
-        return float(np.mean((np.interp(at, ours[0], ours[column]) - theirs) ** 2))
-
-    found = not_negative(over_seeds(pseudo_values(square, runs), ("", "-", "m/s")[column]))
-    return transformed(found, math.sqrt, found.unit, "root of the mean square, jackknife over runs")
+def _rms(runs: Sequence[Measured], column: int) -> Interval:
+    """Both counted from the top of the bed."""
+    return rms(runs, _from_top(*published()), column, -BELOW, _pooled)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -119,7 +104,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         return []
     theirs = published()
     q = rate(*theirs)
-    z, phi, u = _from_top(*pooled_profile(runs))
+    z, phi, u = _pooled(runs)
     z_ref, phi_ref, u_ref = _from_top(*theirs)
     window = (z >= -BELOW - 1.0) & (z <= float(z_ref.max()))
     settings = {
@@ -137,7 +122,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     "q_star over that published", over_seeds([float(one["q_star"]) / q for one in runs], "-"),
                     "-", Band(0.9, 1.1, "-", "two codes with the same laws, 10 %"),
                 ),
-                misfit("rms of phi", rms(runs, 1), "-", at_most(0.05, "a tenth of the concentration of a "
+                misfit("rms of phi", _rms(runs, 1), "-", at_most(0.05, "a tenth of the concentration of a "
                                                                       "packed bed")),
                 misfit("depth of the water over the bed", depth),
             ],
@@ -146,7 +131,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         comparison(
             "u", "Speed of the beads", SOURCE, height, Axis("speed", "m/s"),
             [Curve("ryusa", z[window], u[window])], [Curve("r2d6s2", z_ref, u_ref)],
-            [misfit("rms of u", rms(runs, 2), "m/s", at_most(0.1, "a twentieth of the speed of the water at "
+            [misfit("rms of u", _rms(runs, 2), "m/s", at_most(0.1, "a twentieth of the speed of the water at "
                                                                   "its surface"))],
             settings,
         ),
