@@ -1,5 +1,6 @@
 """A pressure of a servo acts on the area of the sample, or of the wall where that is smaller."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -82,3 +83,41 @@ def test_the_notes_say_on_what_area_a_pressure_acts() -> None:
         assert "300 Pa on 0.5027 cm2" in note and said in note and "0.01508 N" in note
     built = build.build(read_text(case_path("shear_cell.toml").read_text(encoding="utf-8")))
     assert any("500 Pa on 4.32 cm2, the whole sample: 0.216 N" in note for note in built.notes)
+
+
+def ring(inner: float, outer: float, thick: float) -> SolidWall:
+    """A ring of 64 sides about the middle of the box, a sheet or, with a thickness, a closed body."""
+    angle = [2.0 * math.pi * k / 64 for k in range(65)]
+
+    def at(r: float, a: float, z: float) -> tuple[float, float, float]:
+        return 0.5 * L + r * math.cos(a), 0.5 * W + r * math.sin(a), z
+
+    corners = []
+    for a, b in itertools.pairwise(angle):
+        strips = [((inner, 0.0), (outer, 0.0))]
+        if thick:
+            strips += [((outer, 0.0), (outer, thick)), ((outer, thick), (inner, thick))]
+            strips += [((inner, thick), (inner, 0.0))]
+        for (r, z), (s, y) in strips:
+            one, two, three, four = (at(r, a, z), at(s, a, y), at(s, b, y), at(r, b, z))
+            corners += [[one, two, three], [one, three, four]]
+    return build.triangles("lid", [[[x, y, 0.04 + z] for x, y, z in one] for one in corners])
+
+
+@pytest.mark.parametrize("inner", [0.002, 0.006])
+@pytest.mark.parametrize("thick", [0.0, 0.001])
+@pytest.mark.parametrize("tubes", [False, True])
+def test_a_ring_presses_with_its_own_area_and_not_with_that_of_its_hole(inner, thick, tubes) -> None:
+    outer = 0.008
+    walls = (
+        [build.cylinder(f"tube {r:g}", (0.5 * L, 0.5 * W, 0.0), UP, r) for r in (inner, outer)]
+        if tubes
+        else []
+    )
+    servo = build.Servo((0.0, 0.0, -1.0), 0.1, 1.0, pressure=300.0)
+    lid = replace(ring(inner, outer, thick), servo=servo)
+    scene, _ = build.scene([[0.01, 0.012, 0.01]], 0.001, walls=[*walls, lid])
+    area = 32.0 * math.sin(math.pi / 32.0) * (outer**2 - inner**2)
+    assert scene.walls.servo[-1, ASKED] == pytest.approx(300.0 * area, rel=1e-9)
+    (note,) = servo_notes(scene, {len(walls): 300.0})
+    assert "it has a hole or a recess" in note

@@ -214,7 +214,12 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
 
 @pytest.mark.parametrize(
     ("folder", "name"),
-    [("fig20/100Ncm-1a2b3c4d", "100Ncm"), ("saltation", "saltation"), ("runs/0011aaff", "run")],
+    [
+        ("fig20/100Ncm-1a2b3c4d", "100Ncm"),
+        ("saltation", "saltation"),
+        ("runs/0011aaff", "run"),
+        ("heap-20250101", "heap-20250101"),
+    ],
 )
 def test_a_legend_does_not_show_the_digits_that_tell_runs_of_a_sweep_apart(
     tmp_path, folder: str, name: str

@@ -46,7 +46,8 @@ def row_with(
         impulse[:, names.index(name), 0] = impulse[:, names.index(name), TOUCHED] = force * T
     run.scene = SimpleNamespace(
         walls=Walls(face, *kinds, names), n_grain=0, has_servo=False, period=(np.inf, np.inf),
-        plane_normal=np.zeros((0, 3)), plane_point=np.zeros((0, 3)), gravity=np.array([0.0, 0.0, -G]),
+        plane_normal=np.zeros((0, 3)), plane_point=np.zeros((0, 3)), plane_active=np.zeros(0, bool),
+        gravity=np.array([0.0, 0.0, -G]),
     )  # fmt: skip
     run.tally, run.walls, run.wall_travel = {"t": T}, impulse, np.zeros((11, n))
     theirs = [name for name in names if name not in own]

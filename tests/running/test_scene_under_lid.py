@@ -103,3 +103,16 @@ def test_contact_forces_are_recorded_on_request_alone(tmp_path: Path) -> None:
     run = ran(cell(), tmp_path / "with", short)
     assert run.scene.forces and run.case["record"]["forces"] is True
     assert not math.isnan(run.measure("contact_stress").deviation)
+
+
+def test_a_ring_of_grains_has_no_profile_since_its_area_is_not_seen_from_its_middle(tmp_path: Path) -> None:
+    angle = np.arange(24) * (2.0 * math.pi / 24.0)
+    x = np.concatenate(
+        [np.stack([0.01 * np.cos(angle), 0.01 * np.sin(angle), 0.0 * angle + z], 1) for z in (0.001, 0.004)]
+    )
+    tubes = [build.cylinder(f"tube {r:g}", (0, 0, -0.01), (0, 0, 0.04), r) for r in (0.0085, 0.0115)]
+    floor = [("floor", (0, 0, 0), (0, 0, 1))]
+    made = build.scene(x, D, walls=tubes, planes=floor, restitution=0.4, stiffness=1500.0, density=DENSITY)
+    run = ran(made, tmp_path / "run", Stop(time=0.02), forces=False)
+    with pytest.raises(ResultsError, match="open along x"):
+        run.measure("profile", begin=0.0)

@@ -23,6 +23,7 @@ from ryusa.model.walls import (
     face_boxes,
     speed_of,
 )
+from ryusa.model.welding import rims
 
 ROUND = 1.0e-4  # share by which the area of the polygon that stands for a disc may be too small
 ASIDE = 1.0e-6  # of the size of a wall, towards the grains
@@ -72,16 +73,23 @@ def pressed_area(scene: Scene, wall: int, towards: Floats) -> tuple[float, float
     Returns
     -------
     area : of the wall seen along `towards`, of a closed body one side; without what lies beyond other walls
-        and planes, as they stand in the plane of the wall, or beyond one period.
-    sample : all that other walls, planes and periods bound there; inf where it is open.
+        and planes, as they stand in the plane of the wall, or beyond one period. Of a wall with a hole or a
+        recess, such as a ring, all of it.
+    sample : all that other walls, planes and periods bound there; inf where it is open, nan where the wall
+        has a hole or a recess.
     """
     walls = scene.walls
     assert walls is not None
     mine = walls.wall == wall
     whole = area_along(walls.face[mine], walls.kind[mine], towards)
     corners, owner = triangles_of(walls, SIDES)
-    rim, widest = rim_of(corners[owner == wall].reshape(-1, 3), towards)
-    whole = whole if whole <= (1.0 + ROUND) * widest else widest  # more: a body, or a plate of two faces
+    own = corners[owner == wall]
+    if not rims(own)[0]:  # a closed body
+        whole *= 0.5
+    rim, hull = rim_of(own.reshape(-1, 3), towards)
+    if whole < (1.0 - ROUND) * hull:
+        return whole, math.nan
+    whole = whole if whole <= (1.0 + ROUND) * hull else hull  # more: folds that lie over each other
     origin = rim.mean(axis=0) + ASIDE * float(np.ptp(rim)) * towards  # another wall may end where it begins
     within = section_area(scene, origin, towards, 0.0, rim, without=wall)
     sample = section_area(scene, origin, towards, 0.0, without=wall)
@@ -96,7 +104,9 @@ def servo_notes(scene: Scene, pressures: Mapping[int, float]) -> tuple[str, ...]
         row = walls.servo[w]
         area, sample = pressed_area(scene, w, row[TOWARDS : TOWARDS + 3])
         share = area / sample
-        if share > 1.0 - ROUND:
+        if math.isnan(sample):
+            said = "all of it, since it has a hole or a recess; what lies beyond other walls counts too"
+        elif share > 1.0 - ROUND:
             said = "the whole sample"
         elif math.isinf(sample):
             said = "its own, as the sample has open sides"

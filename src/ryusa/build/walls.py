@@ -150,14 +150,9 @@ def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
         used += int(mine.max(initial=-1)) + 1
     motion = np.vstack([_motion(wall.motion) for wall in split])
     made = Walls(
-        face,
-        kind,
-        number,
-        np.concatenate(surface),
-        np.ones(len(walls), np.bool_),
-        motion,
+        face, kind, number, np.concatenate(surface), np.ones(len(walls), np.bool_), motion,
         tuple(wall.name for wall in walls),
-    )
+    )  # fmt: skip
     made = replace(made, servo=servo_rows(replace(scene, walls=made), [wall.servo for wall in walls]))
     for array in (one for one in vars(made).values() if isinstance(one, np.ndarray)):
         array.flags.writeable = False

@@ -14,7 +14,7 @@ from ryusa.measure._run import settle_time
 from ryusa.results import Results
 
 Drawn = tuple[Figure, list[dict[str, object]]]
-_DIGITS = re.compile(r"-?[0-9a-f]{8}$")  # of studies, `study.task`
+_DIGITS = re.compile(r"(?:^|-)(?=[0-9]*[a-f])[0-9a-f]{8}$")  # of studies, `study.task`; a date has no letter
 Side = Literal["right", "left"]
 
 

@@ -198,6 +198,8 @@ def _averages(
     items.append(_one(f"{one.name}: force x, both, largest", "N", largest, ends))
     items.append(_one(f"{one.name}: force x, both, largest, by width", "N/m", largest / width, ends))
     items.append(_one(f"{one.name}: overturning, both, largest", "N m", float(turns.max()), ends))
+    by_width = float(turns.max()) / width
+    items.append(_one(f"{one.name}: overturning, both, largest, by width", "N m/m", by_width, ends))
     items.append(_one(f"{one.name}: impulse x, both", "N s", float(both[:, 0] @ dt), ends))
     return items
 

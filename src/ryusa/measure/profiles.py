@@ -13,12 +13,13 @@ from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import average, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
-from ryusa.model.plane_section import section_area
+from ryusa.model.plane_section import rim_of, section_area
 from ryusa.model.scene import Bools
 from ryusa.printed import ByShape
 
 CHUNK = 400_000  # places of grains held in memory at once
 MOST = 100_000  # layers; more come from a grain that was thrown away
+LEAST = 10  # grains from which their hull tells how far they reach
 TENTHS = (0.1, 0.9)  # shares of the grains below whose heights walls must be upright, to
 UPRIGHT = 0.01  # this share of the area of a section
 V, A, U_X, U_Z, SPIN, U_XX, U_ZZ = range(7)  # what is summed over the slices in a layer
@@ -337,7 +338,8 @@ def area_of(run: Run, first: int, scene: Scene, lanes: int) -> float:
     """Area of bed, all lanes together, or of the sample between upright walls [m2]; inf where it is open.
 
     Between walls it is that of the section at the middle height of the grains in frame `first`, seen from
-    their middle; inf where those at the heights of the lowest and highest tenth differ by 1 % or more.
+    their middle; inf where those at the heights of the lowest and highest tenth differ by 1 % or more, or
+    where grains lie round more than is seen, as in a ring.
     """
     along, across = float(scene.period[0]), _width(scene, lanes)
     if scene.plane_case or math.isfinite(along * across):
@@ -346,7 +348,10 @@ def area_of(run: Run, first: int, scene: Scene, lanes: int) -> float:
     heights = np.nanquantile(x[:, 2], (0.5, *TENTHS))
     middle, up, t = np.nanmean(x, axis=0), np.array([0.0, 0.0, 1.0]), float(run.frames.t[first])
     area, *others = [section_area(scene, np.array([*middle[:2], z]), up, t) for z in heights]
-    return area if all(abs(one - area) < UPRIGHT * area for one in others) else math.inf
+    if not all(abs(one - area) < UPRIGHT * area for one in others):
+        return math.inf
+    there = x[np.isfinite(x[:, 0])]
+    return math.inf if len(there) > LEAST and rim_of(there, up)[1] > area else area
 
 
 def _stretch(scene: Scene, lanes: int, between: tuple[float, float]) -> float:
@@ -361,9 +366,15 @@ def _width(scene: Scene, lanes: int) -> float:
         return lanes * (scene.slab_width if math.isfinite(scene.slab_width) else float(scene.d.mean()))
     if math.isfinite(scene.period[1]):
         return float(scene.period[1])
+    sides = side_planes(scene)
+    return math.inf if sides is None else sides[1] - sides[0]
+
+
+def side_planes(scene: Scene) -> tuple[float, float] | None:
+    """Places y of the planes that face each other across the flow [m]; None without two of them."""
     facing = scene.plane_normal[:, 1] * scene.plane_active
     right, left = (scene.plane_point[facing == side, 1] for side in (1.0, -1.0))
-    return float(left.min() - right.max()) if len(right) and len(left) else math.inf
+    return (float(right.max()), float(left.min())) if len(right) and len(left) else None
 
 
 def _mean(name: str, unit: str, series: Floats) -> Layers:

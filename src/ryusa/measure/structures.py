@@ -6,13 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.measure._run import Floats, Run
+from ryusa.measure.profiles import side_planes
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.walls import forces_of_frames
 from ryusa.measure.water_on_faces import areas, in_pieces, water_line, water_on_triangles
-from ryusa.model import Scene
 from ryusa.model.arrays import Bools
 from ryusa.model.row import RowDam
-from ryusa.model.walls import FaceKind, Walls, corners_of_box, face_boxes, pose
+from ryusa.model.wall_shape import in_world, triangles_of
+from ryusa.model.walls import Walls
 from ryusa.model.welding import flipped_sides, rims
 from ryusa.results.row import RowFrames
 
@@ -130,7 +131,8 @@ def water_on_mesh(run: Run, one: Structure, kept: slice) -> Floats:
     by the order of their corners, of a closed mesh the one outside.
     """
     frames: RowFrames = run.row
-    line, sides = water_line(frames), _sides(run.scene)
+    line = water_line(frames)
+    sides = None if math.isfinite(run.scene.period[1]) else side_planes(run.scene)
     length = frames.row.n_segment * frames.row.dx
     shifts = (-length, 0.0, length) if frames.row.periodic else (0.0,)
     times = np.asarray(frames.t, dtype=np.float64)
@@ -175,17 +177,10 @@ def of_grains(run: Run, structures: list[Structure], kept: slice) -> tuple[Float
 
 
 def _corners(walls: Walls, name: str, t: float) -> Floats:
-    """Corners of the triangles of a wall at time t [s], or of the box round curved faces [m]."""
+    """Corners of the triangles of a wall at time t [m]."""
     w = walls.names.index(name)
-    face, kind = walls.face[walls.wall == w], walls.kind[walls.wall == w]
-    turn, shift = pose(walls.motion[w], t)
-    if (kind == FaceKind.TRIANGLE).all():
-        a, b, c = face[:, :3], face[:, 3:6], face[:, 6:9]
-        points = np.stack([a, a + b, a + c], axis=1)
-    else:
-        low, high = face_boxes(face, kind)
-        points = corners_of_box(low.min(axis=0), high.max(axis=0))[[[0, 1, 2], [5, 6, 7], [3, 4, 7]]]
-    return np.asarray(points @ turn.T + shift)
+    corners, owner = triangles_of(walls)
+    return in_world(walls, corners, owner, t)[owner == w]
 
 
 def _toe(corners: Floats) -> tuple[float, float]:
@@ -201,12 +196,3 @@ def _inside_out(corners: Floats) -> bool:
     if rims(corners)[0]:
         return False
     return float((areas(corners) * (corners[:, 0] - corners.mean(axis=(0, 1)))).sum()) < 0.0
-
-
-def _sides(scene: Scene) -> tuple[float, float] | None:
-    """Places y of planes as side walls [m]; None without two of them."""
-    if math.isfinite(scene.period[1]):
-        return None
-    across = np.asarray(scene.plane_normal)[:, 1]
-    right, left = (scene.plane_point[across * sign > 1.0 - SAME, 1] for sign in (1.0, -1.0))
-    return (float(right.max()), float(left.min())) if len(right) and len(left) else None

@@ -93,8 +93,8 @@ def _verdict(runs: Sequence[Results], every: Sequence[Average], unsteady: bool, 
         )
     if alone:
         said.append("Nothing is random in water alone: one run suffices, and no statistical interval exists.")
-        if not any(one.changes for one in every):
-            last = next(one.window for one in every if one.n_series)
+        last = next((one.window for one in every if one.n_series), None)
+        if last is not None and not any(one.changes for one in every):
             said.append(
                 f"Means from {last[0]:.4g} to {last[1]:.4g} s, in which they change by less than 1 %."
             )

@@ -101,7 +101,8 @@ def not_covered(runs: Sequence[Results]) -> list[str]:
         grains and not contact.get("cohesion") and contact.get("adhesion") == "none",
         f"Angular or flat grains: they are spheres, with {rolling} rolling friction.":
         grains and (case.get("grains") or {}).get("shape") == "sphere",
-        f"Wider mixtures: the largest grain is {wide:.2g} times the smallest.": grains and wide < 3.0,
+        "Mixtures: all grains are of one size.": grains and wide == 1.0,
+        f"Wider mixtures: the largest grain is {wide:.2g} times the smallest.": grains and 1.0 < wide < 3.0,
         "Sediment: the bed is fixed.": not grains and row is not None,
         f"Times after {_end(runs):.4g} s.": not periodic,
         f"Slow changes: the record is {_end(runs):.4g} s long.": periodic,

@@ -32,14 +32,12 @@ class Headline:
         last frame; or "row:" and a quantity of its rows, for a measure of one moment.
     sentence : `{}` is the number with its unit, `{name}` what `*` stands for.
     unit, factor : in which it is said, and what the SI value is multiplied by.
-    by_width : whether it is divided by the width of a row of columns.
     """
 
     take: str
     sentence: str
     unit: str
     factor: float = 1.0
-    by_width: bool = False
 
 
 DEGREES = 180.0 / math.pi
@@ -67,9 +65,9 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         ),
         Headline("*: force x, both, largest, by width", "The largest is {}.", "N/m"),
         Headline(
-            "*: overturning, both, largest",
+            "*: overturning, both, largest, by width",
             "The largest moment of the load about its toe is {}, and overturns it where above 0.",
-            "N m/m", by_width=True,
+            "N m/m",
         ),
     ),
     "walls": (Headline("*dam*: force x", "The grains push {name} downstream with {}.", "N"),),
@@ -145,7 +143,7 @@ def taken(results: Results, measure: str, begin: float | None) -> dict[Headline,
                 continue
             name = one.name.partition(":")[0] if "*" in line.take else ""
             said = replace(line, sentence=line.sentence.replace("{name}", f"“{name}”"))
-            found[said] = _in_unit(one, line, results, alone)
+            found[said] = _in_unit(one, line, alone)
     return found
 
 
@@ -186,19 +184,12 @@ def _moment(name: str, value: float, variation: float, t: float, drift: float = 
     return Average(name, "", value, nan, 1, 0, nan, (t, t), variation, drift, nan)
 
 
-def _in_unit(one: Average, line: Headline, results: Results, alone: bool) -> Average:
-    factor = line.factor / (_width(results) if line.by_width else 1.0)
-    value, drift = one.value * factor, one.drift * factor
+def _in_unit(one: Average, line: Headline, alone: bool) -> Average:
+    value, drift = one.value * line.factor, one.drift * line.factor
     if alone and one.n_series:  # no scatter to hold a drift against
         variation = math.inf if not abs(drift) <= SETTLED * abs(value) else 0.0
         one = replace(one, variation=variation)
-    return replace(one, value=value, error=one.error * factor, drift=drift, unit=line.unit)
-
-
-def _width(results: Results) -> float:
-    assert results.row is not None
-    row = results.row.row
-    return row.column.area / (row.n_segment * row.dx)
+    return replace(one, value=value, error=one.error * line.factor, drift=drift, unit=line.unit)
 
 
 class _Levels:

@@ -325,8 +325,8 @@ class _Run:
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
         """Run from the first step."""
         done = self._loop(scene, scene, state, Watch(scene, state), notes, None, None)
-        if done.complete and self.about.keep_time is not None:
-            made = done.summary
+        made = done.summary
+        if done.complete and self.about.keep_time is not None and made["steps"] > state.step:
             steps, took = made["steps"] - state.step, made["wall"] - made["compiled"]
             self.about.keep_time(steps, took, made["particle_steps_per_second"] * took / steps)
         return done
