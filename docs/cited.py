@@ -60,6 +60,14 @@ def _runs(ledger: Mapping[str, Any]) -> int:
     return ledger["provenance"]["commits_of_runs"][ledger["provenance"]["commit"]]
 
 
+def _runs_of_other_code(ledger: Mapping[str, Any]) -> int:
+    """Runs of other code than the ledger's, with those of its parts that were made at another commit."""
+    made = ledger["provenance"]
+    parts = [one for one in made.get("parts", {}).values() if one["commit"] != made["commit"]]
+    own = sum(one["runs_made"] + one["runs_opened"] for one in parts)
+    return sum(made["of_other_code"].values()) + own
+
+
 def _most(ledger: Mapping[str, Any]) -> int:
     """Settings of the claim that has most of them."""
     return max(one["robustness"]["of"] for one in ledger["findings"])
@@ -69,7 +77,7 @@ WHOLE: Mapping[str, Callable[[Mapping[str, Any]], float]] = {
     "claims": lambda ledger: len(ledger["findings"]),
     "seeds": lambda ledger: len(ledger["seeds"]),
     "runs": _runs,
-    "runs of other code": lambda ledger: sum(ledger["provenance"]["of_other_code"].values()),
+    "runs of other code": _runs_of_other_code,
     "runs made": lambda ledger: ledger["provenance"]["runs_made"],
     "wall time": lambda ledger: ledger["provenance"]["wall_s"],
     "settings": _most,

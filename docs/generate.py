@@ -296,12 +296,12 @@ def ledger_summaries() -> dict[Path, str]:
     """One line per number of each kept ledger, for a reader of the repository and for `git diff`."""
     from ryusa.studies.osada2004.study import PAPER
     from ryusa.studies.validation.study import VALIDATION
-    from ryusa.study.page import summary
+    from ryusa.study.page import made_by, summary
 
     return {
         LEDGERS / f"{study.name}.md": f"# {study.title}\n\nWritten by docs/generate.py from "
         f"[{study.name}.json.xz]({study.name}.json.xz), which also holds every sweep; `{study.command}` "
-        f"makes it anew.\n\n{summary(study, kept(study.name))}\n"
+        f"makes it anew. Made {made_by(kept(study.name))}.\n\n{summary(study, kept(study.name))}\n"
         for study in (PAPER, VALIDATION)
     }
 

@@ -6,10 +6,12 @@ import math
 import numpy as np
 import pytest
 
+from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.study import Band, Finding, Plan, Source, calculation, comparison, misfit, over_seeds
+from ryusa.study import Band, Finding, Level, Plan, Source, calculation, comparison, misfit, over_seeds
+from ryusa.study.kept import read_ledger
 from ryusa.study.ledger import make
-from ryusa.study.page import write
+from ryusa.study.page import made_by, write
 from ryusa.study.study import Study
 
 
@@ -88,3 +90,34 @@ def test_a_part_whose_runs_would_take_too_long_gets_none(tmp_path) -> None:
     plain = json.loads((tmp_path / "ledger.json").read_text(encoding="utf-8"))
     assert set(plain["too_long_minutes"]) == {"near", "at_the_limit"}
     assert "given no more seeds" in (tmp_path / "ledger.html").read_text(encoding="utf-8")
+
+
+def test_a_part_made_again_takes_the_place_of_its_own_in_a_kept_ledger(tmp_path) -> None:
+    kept = tmp_path / "kept.json.xz"
+    write(make(Three(), None, Plan(seeds=(1, 2, 3, 4)), tmp_path / "whole"), kept)
+    before = read_ledger(kept)
+    again = make(Three(), ["near"], Plan(seeds=tuple(range(5, 21))), tmp_path / "part")
+    write(again, kept)
+    now = read_ledger(kept)
+    clear, near, limit = now["findings"]
+    assert [one["part"] for one in now["findings"]] == list(Three.parts)
+    assert (clear, limit) == (before["findings"][0], before["findings"][2])
+    assert (near["trials"][0]["n"], near["outcome"]) == (16, "holds")
+    assert now["seeds"] == [1, 2, 3, 4]
+    assert now["more_seeds"] == {"near": list(range(5, 21))}
+    origin = dict(now["provenance"])
+    assert origin.pop("parts")["near"]["runs_made"] == 16
+    assert origin == before["provenance"]
+    assert made_by(now).endswith(f"; near: {made_by(read_ledger(tmp_path / 'part' / 'ledger-part.json'))}")
+    own = read_ledger(tmp_path / "part" / "ledger-part.json")
+    assert [one["part"] for one in own["findings"]] == ["near"]
+
+
+def test_a_part_is_not_put_into_a_ledger_of_another_level(tmp_path) -> None:
+    kept = tmp_path / "kept.json"
+    write(make(Three(), None, Plan(seeds=(1, 2)), tmp_path / "whole"), kept)
+    before = kept.read_bytes()
+    again = make(Three(), ["near"], Plan(Level.FULL, (1, 2)), tmp_path / "part")
+    with pytest.raises(ResultsError, match="at level full have no place in it"):
+        write(again, kept)
+    assert kept.read_bytes() == before

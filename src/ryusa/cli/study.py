@@ -70,8 +70,12 @@ MostMinutes = Annotated[
 ]  # fmt: skip
 Json = Annotated[
     Path | None,
-    typer.Option("--json", metavar="FILE", help="Write the ledger here too; compressed if FILE ends in .xz."),
-]
+    typer.Option(
+        "--json", metavar="FILE",
+        help="Write the ledger here too; compressed if FILE ends in .xz. Parts that are named take the place "
+        "of their own in a ledger that is there.",
+    ),
+]  # fmt: skip
 
 
 def register(app: typer.Typer) -> None:
@@ -139,9 +143,12 @@ def carried_out(
     """
     from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
+    from ryusa.study.kept import kept_at
     from ryusa.study.ledger import make
     from ryusa.study.page import write
 
+    if names is not None and json is not None:
+        kept_at(json, chosen, plan.level)  # what cannot be joined is refused before any run
     try:
         progress = None if quiet else ProgressLines()
         made = make(

@@ -2,7 +2,7 @@
 
 import json
 import lzma
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +68,54 @@ def read_ledger(path: Path) -> dict[str, Any]:
     if plain["format"] < FORMAT:
         return {**plain, "format": FORMAT, "findings": [_of_settings(one) for one in plain["findings"]]}
     return plain
+
+
+def kept_at(path: Path, study: Study, level: str) -> dict[str, Any] | None:
+    """The ledger that findings of some parts are to be put into; None if there is no such file yet.
+
+    Raises
+    ------
+    ResultsError : the file is no ledger, or one of another study or level.
+    """
+    if not path.exists():
+        return None
+    kept = read_ledger(path)
+    if (kept["study"], kept["level"]) != (study.name, level):
+        raise ResultsError(
+            f"{path} is the ledger of '{kept['study']}' at level {kept['level']}; parts of '{study.name}' at "
+            f"level {level} have no place in it: name another file"
+        )
+    return kept
+
+
+def joined(study: Study, kept: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """A kept ledger with the parts of a new one in place of its own, and where each of these came from.
+
+    What the kept ledger says of code, machine and runs stays true of its other parts; that of the new parts
+    stands in `provenance["parts"]`, by name of the part.
+    """
+    parts = dict.fromkeys(one["part"] for one in new["findings"])
+    by_id = {one["id"]: one for one in kept["findings"] if one["part"] not in parts}
+    by_id |= {one["id"]: one for one in new["findings"]}
+    own_seeds = {} if new["seeds"] == kept["seeds"] else dict.fromkeys(parts, new["seeds"])
+    whole = {**new, "seeds": kept["seeds"], "indicative": kept["indicative"] or new["indicative"]}
+    for key, added in (("more_seeds", {**own_seeds, **new["more_seeds"]}), ("too_long_minutes", {})):
+        whole[key] = _of_others(kept.get(key, {}), parts) | {**added, **new[key]}
+    whole["faults"] = _of_others(kept["faults"], parts) | new["faults"]
+    whole["errors_in"] = [*_of_others(dict.fromkeys(kept["errors_in"]), parts), *new["errors_in"]]
+    failed = any(one["problem"] for one in kept["findings"] if one["part"] not in parts)
+    whole["problems"] = {**(kept["problems"] if failed else {}), **new["problems"]}
+    origin = {key: value for key, value in new["provenance"].items() if key != "packages"}
+    earlier = kept["provenance"].get("parts", {})
+    whole["provenance"] = {**kept["provenance"], "parts": {**earlier, **dict.fromkeys(parts, origin)}}
+    place = {name: at for at, name in enumerate(study.parts)}
+    inside = sorted(by_id, key=lambda one: place.get(by_id[one]["part"], len(place)))
+    return {**whole, "findings": [by_id[one] for one in study.order(inside)]}
+
+
+def _of_others(said: Mapping[str, Any], parts: Iterable[str]) -> dict[str, Any]:
+    """What is said by name of a part ("fig19", "fig19: its tasks"), of parts other than these."""
+    return {name: value for name, value in said.items() if name.partition(":")[0] not in parts}
 
 
 def as_registered(study: Study, plain: Mapping[str, Any]) -> dict[str, Any]:

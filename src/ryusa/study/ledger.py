@@ -46,6 +46,7 @@ class Ledger:
     earlier : ledger of the same study to compare the verdicts with.
     seeds : of the parts that were given more than the plan has, by part.
     too_long : parts that were given no more, since their runs would take longer than allowed [s], by part.
+    whole : of all parts of the study, not of those alone that were named.
     """
 
     study: Study
@@ -61,6 +62,7 @@ class Ledger:
     earlier: Mapping[str, Any] | None = None
     seeds: Mapping[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
     too_long: Mapping[str, float] = field(default_factory=dict[str, float])
+    whole: bool = True
 
     @property
     def log(self) -> str:
@@ -156,7 +158,7 @@ def make(
         study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
         counted(results, where.jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
         {what: one.words for what, one in faults.items()}, traces_of(results, faults), seeds=seeds,
-        too_long=too_long,
+        too_long=too_long, whole=names is None,
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from ryusa.running.disk import write_atomically
 from ryusa.study.html import embedded, is_wide, template, write_log
 from ryusa.study.interval import short
-from ryusa.study.kept import write_ledger
+from ryusa.study.kept import joined, kept_at, write_ledger
 from ryusa.study.ledger import Ledger
 from ryusa.study.said import checks, tally
 from ryusa.study.study import LOOKS, Study, limits_in_words
@@ -20,17 +20,21 @@ OPEN_SWEEP = 12  # rows; a longer sweep is folded
 def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     """Write page and JSON into the folder of the ledger, and a copy of the JSON to `copy`.
 
-    Each file appears complete or not at all.
+    A ledger of some parts takes the place of these in a `copy` that has others. Each file appears complete or
+    not at all.
 
     Raises
     ------
     OSError : a file cannot be written.
+    ResultsError : `copy` exists and is no ledger of this study at this level.
     """
     plain = ledger.plain()
     page = ledger.folder / f"{ledger.stem}.html"
-    files = [ledger.folder / f"{ledger.stem}.json", *([] if copy is None else [copy])]
-    for path in files:  # first, so that the numbers are kept if the page fails
-        write_ledger(path, plain)
+    kept = None if ledger.whole or copy is None else kept_at(copy, ledger.study, plain["level"])
+    whole = plain if kept is None else joined(ledger.study, kept, plain)
+    files = {ledger.folder / f"{ledger.stem}.json": plain, **({} if copy is None else {copy: whole})}
+    for path, content in files.items():  # first, so that the numbers are kept if the page fails
+        write_ledger(path, content)
     write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
     write_atomically(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
     return (page, *files)
@@ -149,6 +153,18 @@ def interval(found: Mapping[str, Any]) -> str:
     middle = f"{short(found['value'])}{unit}"
     low, high = (short(end) if end is not None else "no limit" for end in (found["low"], found["high"]))
     return middle if low == high else f"{middle} ({low} to {high})"
+
+
+def made_by(plain: Mapping[str, Any]) -> str:
+    """Day, commit and number of runs of a ledger, and of each part that was made at another time."""
+    made = plain["provenance"]
+    parts = "".join(f"; {name}: {_made_by(one)}" for name, one in sorted(made.get("parts", {}).items()))
+    return f"{_made_by(made)}{parts}"
+
+
+def _made_by(made: Mapping[str, Any]) -> str:
+    code = f"commit {made['commit'][:12]}" if made.get("commit") else f"ryusa {made['ryusa']}"
+    return f"{made['made'][:10]}, {code}, {made['runs_made'] + made['runs_opened']} runs"
 
 
 def summary(study: Study, plain: Mapping[str, Any]) -> str:
