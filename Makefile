@@ -54,9 +54,9 @@ $(HAS_PYTHON):
 	@$(PIP) uv
 	@touch $@
 
-$(HAS_RYUSA): pyproject.toml constraints.txt | $(HAS_PYTHON)
+$(HAS_RYUSA): pyproject.toml studies/pyproject.toml constraints.txt | $(HAS_PYTHON)
 	@echo "installing ryusa and what it needs into $(VENV)"
-	$(call install,--editable .)
+	$(call install,--editable . --editable studies)
 	@touch $@
 
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
@@ -105,7 +105,7 @@ lint: $(HAS_TESTS) ## ruff: rules and format
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-types: $(HAS_TESTS) ## pyright, strict on src
+types: $(HAS_TESTS) ## pyright, strict on src and studies
 	$(BIN)/pyright
 
 walls: $(HAS_TESTS) ## import-linter: which room may see which
@@ -114,7 +114,7 @@ walls: $(HAS_TESTS) ## import-linter: which room may see which
 quick: $(HAS_TESTS) ## the tests of `make test`: those not marked `full`, with a dozen kernels
 	$(PYTEST) --quick
 
-unit: $(HAS_TESTS) ## the tests of `make test-all`: doctests in src, tests in tests
+unit: $(HAS_TESTS) ## the tests of `make test-all`: doctests in src and studies, tests in tests
 	$(PYTEST)
 
 paper: $(HAS_RYUSA) ## every claim of the paper, judged over four seeds: runs/paper/ledger.html

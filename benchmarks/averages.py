@@ -41,7 +41,7 @@ from scipy.stats import t as student
 from ryusa.cases import case_path
 from ryusa.measure import profiles, transport
 from ryusa.results import Results
-from ryusa.studies.validation.equilibrium import flowing
+from ryusa_studies.validation.equilibrium import flowing
 
 Numbers = dict[str, float]
 CARRIED = {"contact.timing": "at steps", "contact.slip": "total", "contact.cap": "total"}

@@ -178,8 +178,8 @@ def study_of(ledger: str) -> Study:
 
 
 def _study_named(name: str) -> Study:
-    from ryusa.studies.osada2004.study import PAPER
-    from ryusa.studies.validation.study import VALIDATION
+    from ryusa_studies.osada2004.study import PAPER
+    from ryusa_studies.validation.study import VALIDATION
 
     return {one.name: one for one in (PAPER, VALIDATION)}[name]
 

@@ -267,7 +267,7 @@ def _parameter(parameter: Any) -> str:
 
 def validation_table() -> str:
     """Every comparison of the kept ledger of `ryusa validate`."""
-    from ryusa.studies.validation.study import counted, table
+    from ryusa_studies.validation.study import counted, table
 
     ledger = kept("validation")
     return f"{counted(ledger)}\n\n{table(ledger)}\n"
@@ -275,8 +275,8 @@ def validation_table() -> str:
 
 def validation_bands() -> str:
     """Changed verdicts and bands of the kept ledger of `ryusa validate`, runs of each comparison."""
-    from ryusa.studies.validation.sampling import CLOSED, sampling_table
-    from ryusa.studies.validation.study import VALIDATION, changes
+    from ryusa_studies.validation.sampling import CLOSED, sampling_table
+    from ryusa_studies.validation.study import VALIDATION, changes
 
     ledger = kept("validation")
     closed = ", ".join(f"{name} ({why})" for name, why in CLOSED.items())
@@ -294,9 +294,9 @@ def validation_bands() -> str:
 
 def ledger_summaries() -> dict[Path, str]:
     """One line per number of each kept ledger, for a reader of the repository and for `git diff`."""
-    from ryusa.studies.osada2004.study import PAPER
-    from ryusa.studies.validation.study import VALIDATION
     from ryusa.study.page import made_by, summary
+    from ryusa_studies.osada2004.study import PAPER
+    from ryusa_studies.validation.study import VALIDATION
 
     return {
         LEDGERS / f"{study.name}.md": f"# {study.title}\n\nWritten by docs/generate.py from "

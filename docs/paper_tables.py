@@ -21,7 +21,7 @@ SOFTENED = (
 
 def paper_table() -> str:
     """Every claim of the kept ledger of `ryusa paper`, and what was changed in their registration."""
-    from ryusa.studies.osada2004.study import PAPER, table
+    from ryusa_studies.osada2004.study import PAPER, table
 
     standard, full = kept("paper"), kept("paper-full")
     parts = [
@@ -32,8 +32,8 @@ def paper_table() -> str:
         "the case as it ships by both; what no run has a number for is *not judged*.",
         changed_bands(PAPER, standard),
         "Texts of the registration that were changed after they were committed; the earlier wording stands "
-        "beside the later one in the [files](../src/ryusa/studies/osada2004/registration) and on the page "
-        "that `ryusa paper` writes.",
+        "beside the later one in the [files](../studies/ryusa_studies/osada2004/registration) and on the "
+        "page that `ryusa paper` writes.",
         changed_texts(PAPER),
     ]
     return "\n\n".join(parts) + "\n"
@@ -41,8 +41,8 @@ def paper_table() -> str:
 
 def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> str:
     """In how many settings each claim holds at the standard and at the full level."""
-    from ryusa.studies.osada2004.study import PAPER
     from ryusa.study.said import count_of
+    from ryusa_studies.osada2004.study import PAPER
 
     more = {one["id"]: one for one in full["findings"]}
     both = [

@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "ryusa"
+STUDIES = ROOT / "studies" / "ryusa_studies"
 LONGEST = 420  # lines; past that a file is two files
 LONGEST_FUNCTION = 80  # lines; past that a function says why it is one
 REASON = "# One function: "
@@ -27,6 +28,10 @@ def tracked() -> list[Path]:
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("not a git checkout")
     return [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
+
+
+def modules() -> list[Path]:
+    return [*SOURCE.rglob("*.py"), *STUDIES.rglob("*.py")]
 
 
 def imported_by(code: str) -> set[str]:
@@ -53,7 +58,7 @@ def test_a_case_is_checked_without_what_only_runs_and_pictures_need() -> None:
     assert not loaded & {"h5py", "jinja2", "matplotlib", "PIL", "pint", "trimesh", "urllib.request"}
 
 
-@pytest.mark.parametrize("room", ["build", "casefile", "measure", "studies.sweep", "study"])
+@pytest.mark.parametrize("room", ["build", "casefile", "measure", "campaigns.sweep", "study"])
 def test_a_room_loads_no_part_of_scipy_before_it_is_used(room: str) -> None:
     code = f"import ryusa.{room}, sys; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
@@ -79,7 +84,7 @@ def test_the_walls_between_rooms_hold() -> None:
 def test_no_file_of_the_source_is_too_long() -> None:
     long = {
         str(path.relative_to(ROOT)): count
-        for path in SOURCE.rglob("*.py")
+        for path in modules()
         if (count := len(path.read_text(encoding="utf-8").splitlines())) > LONGEST
     }
     assert not long
@@ -99,7 +104,7 @@ def own_lines(node: ast.FunctionDef, lines: list[str]) -> list[str]:
 
 def test_a_function_of_more_than_80_lines_says_why_it_is_one() -> None:
     checked, silent = 0, list[str]()
-    for path in SOURCE.rglob("*.py"):
+    for path in modules():
         text = path.read_text(encoding="utf-8")
         for node in ast.walk(ast.parse(text)):
             if not isinstance(node, ast.FunctionDef):
@@ -114,7 +119,7 @@ def test_a_function_of_more_than_80_lines_says_why_it_is_one() -> None:
 
 def test_every_module_and_public_function_says_what_it_is() -> None:
     silent: list[str] = []
-    for path in SOURCE.rglob("*.py"):
+    for path in modules():
         tree = ast.parse(path.read_text(encoding="utf-8"))
         if tree.body and not ast.get_docstring(tree):
             silent.append(str(path.relative_to(ROOT)))
@@ -127,7 +132,7 @@ def test_every_module_and_public_function_says_what_it_is() -> None:
 
 def test_no_public_class_name_has_two_meanings() -> None:
     homes: dict[str, list[str]] = {}
-    for path in SOURCE.rglob("*.py"):
+    for path in modules():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
@@ -173,14 +178,17 @@ def test_the_version_is_the_same_everywhere() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     version = project["version"]
     assert ryusa.__version__ == version
-    assert project["optional-dependencies"]["kernels"] == [f"ryusa-kernels=={version}"]
+    for name in ("kernels", "studies"):
+        assert project["optional-dependencies"][name] == [f"ryusa-{name}=={version}"]
+    studies = tomllib.loads((ROOT / "studies" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert (studies["version"], studies["dependencies"]) == (version, [f"ryusa=={version}"])
     assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def test_no_folder_with_tests_is_passed_over(pytestconfig: pytest.Config) -> None:
     # pytest looks into no folder called "build" unless told so: tests/build was once never run
     passed_over = pytestconfig.getini("norecursedirs")
-    files = [*SOURCE.rglob("*.py"), *(ROOT / "tests").rglob("test_*.py")]
+    files = [*modules(), *(ROOT / "tests").rglob("test_*.py")]
     folders = {name for file in files for name in file.relative_to(ROOT).parts[:-1]} - {"__pycache__"}
     assert {"build", "engine"} <= folders
     assert not [name for name in folders if any(fnmatch(name, one) for one in passed_over)]

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ryusa import measure
+    from ryusa.campaigns.calibrate import calibrate
+    from ryusa.campaigns.soften import soften
+    from ryusa.campaigns.sweep import sweep
     from ryusa.casefile.case import Case
     from ryusa.casefile.read import read as load
     from ryusa.model import Scene, State
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
-    from ryusa.studies.calibrate import calibrate
-    from ryusa.studies.soften import soften
-    from ryusa.studies.sweep import sweep
 
 __version__ = "0.1.0"
 
@@ -28,13 +28,13 @@ _LAZY = {
     "Results": ("ryusa.results", "Results"),
     "Scene": ("ryusa.model", "Scene"),
     "State": ("ryusa.model", "State"),
-    "calibrate": ("ryusa.studies.calibrate", "calibrate"),
+    "calibrate": ("ryusa.campaigns.calibrate", "calibrate"),
     "load": ("ryusa.casefile.read", "read"),
     "measure": ("ryusa.measure", ""),
     "run": ("ryusa.running.runner", "run"),
     "run_scene": ("ryusa.running.runner", "run_scene"),
-    "soften": ("ryusa.studies.soften", "soften"),
-    "sweep": ("ryusa.studies.sweep", "sweep"),
+    "soften": ("ryusa.campaigns.soften", "soften"),
+    "sweep": ("ryusa.campaigns.sweep", "sweep"),
 }
 
 __all__ = [

@@ -38,7 +38,7 @@ class MeasureEntry:
     numbers : names and SI units of those of its numbers that `ryusa soften` takes; durations and overlaps of
         contacts are left out, for they follow from the stiffness alone.
     table : whether it gives a table, such as a path, and no quantities that a sweep could list.
-    needs : what it needs of a case, by words of `studies.sweep.measures.NEEDS`.
+    needs : what it needs of a case, by words of `campaigns.sweep.measures.NEEDS`.
     layers : its quantities over height, which `ryusa calibrate` takes at one height: names of the `columns`
         of what it returns, whose middles are its `z`.
     """

@@ -1,14 +1,16 @@
+import importlib.util
 import json
 import re
 
 import pytest
 from typer.testing import CliRunner
 
+import ryusa
 from ryusa.cli import app
-from ryusa.studies.osada2004.study import NAMES, PAPER, load
 from ryusa.study import Band, Finding, Level, Plan, Trial, exact, ledger, page
 from ryusa.study.entry import LedgerEntry
 from ryusa.study.ledger import Ledger
+from ryusa_studies.osada2004.study import NAMES, PAPER, load
 
 
 def call(*words):
@@ -110,3 +112,12 @@ def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     second = json.loads((tmp_path / "copy.json").read_text())
     assert second["provenance"]["runs_opened"] == 2
     assert second["findings"] == ledger["findings"]
+
+
+@pytest.mark.parametrize("command", ["paper", "validate"])
+def test_without_the_studies_one_line_says_how_to_get_them(command, tmp_path, monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(ryusa, "__file__", str(tmp_path / "site-packages" / "ryusa" / "__init__.py"))
+    result = CliRunner().invoke(app, [command, "--list"])
+    assert result.exit_code == 2
+    assert "pip install 'ryusa[studies]'" in " ".join(result.output.split())

@@ -4,8 +4,8 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.studies.validation import water_alone
-from ryusa.studies.validation.study import NAMES, load
+from ryusa_studies.validation import water_alone
+from ryusa_studies.validation.study import NAMES, load
 
 
 def call(*words):

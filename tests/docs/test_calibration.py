@@ -4,10 +4,10 @@ import re
 import shutil
 from pathlib import Path
 
+from ryusa.campaigns.calibrate.design import filling_points
+from ryusa.campaigns.calibrate.runs import CaseRuns
+from ryusa.campaigns.calibrate.study_file import read_calibration
 from ryusa.cases import case_path
-from ryusa.studies.calibrate.design import filling_points
-from ryusa.studies.calibrate.runs import CaseRuns
-from ryusa.studies.calibrate.study_file import read_calibration
 from ryusa.study.executors import Processes
 
 PAGE = (Path(__file__).parents[2] / "docs" / "calibration.md").read_text(encoding="utf-8")

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import ryusa
+from ryusa.campaigns.sweep import plan_sweep, seeds_of
+from ryusa.campaigns.sweep.asked import read_sweep
+from ryusa.campaigns.sweep.part import Measured, runs_of
+from ryusa.campaigns.sweep.table import RUN, SEEDS, rows_of_sweep
 from ryusa.cases import case_path
-from ryusa.studies.sweep import plan_sweep, seeds_of
-from ryusa.studies.sweep.asked import read_sweep
-from ryusa.studies.sweep.part import Measured, runs_of
-from ryusa.studies.sweep.table import RUN, SEEDS, rows_of_sweep
 
 PAGE = (Path(__file__).parents[2] / "docs" / "many-runs.md").read_text(encoding="utf-8")
 

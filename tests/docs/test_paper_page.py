@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import PAPER
 from ryusa.study.kept import as_registered, read_ledger
 from ryusa.study.page import render
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import PAPER
 
 DOCS = Path(__file__).parents[2] / "docs"
 SHARE = re.compile(r"(none|\d+) of (\d+) settings( \((\d+) undecided\))?")

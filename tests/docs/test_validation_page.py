@@ -4,10 +4,10 @@ import re
 from html import unescape
 from pathlib import Path
 
-from ryusa.studies.validation.study import NAMES, VALIDATION, counted, load, table
 from ryusa.study import Level, Plan
 from ryusa.study.kept import as_registered, read_ledger
 from ryusa.study.page import render
+from ryusa_studies.validation.study import NAMES, VALIDATION, counted, load, table
 
 DOCS = Path(__file__).parents[2] / "docs"
 

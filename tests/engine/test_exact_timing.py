@@ -17,7 +17,7 @@ from ryusa.laws.immersed import restitution_exponential, stokes_number
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model import ContactLaw, RollingLaw, Water
 from ryusa.model.scene import EventRule
-from ryusa.studies.osada2004._parts import paper_run
+from ryusa_studies.osada2004._parts import paper_run
 
 SPEED, K_N, PHASES = 0.1, 1.0e4, 40
 

@@ -1,4 +1,4 @@
-"""Numbers that the catalogue names for measures that need walls or ends; others: `tests/studies/soften`."""
+"""Numbers that the catalogue names for measures that need walls or ends; others: `tests/campaigns/soften`."""
 
 import pytest
 from tests.measure.test_deposit import trapping

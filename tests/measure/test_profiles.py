@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ryusa.campaigns.sweep.measures import AtHeight, at_height
 from ryusa.catalogue import MEASURES
 from ryusa.errors import ResultsError
 from ryusa.measure import profiles
 from ryusa.measure.statistics import standard_error, standard_errors
 from ryusa.model import EVENT
-from ryusa.studies.sweep.measures import AtHeight, at_height
 
 D = 0.002
 LENGTH, WIDTH = 20 * D, D

@@ -12,6 +12,7 @@ import pytest
 
 import ryusa
 from ryusa.build import build
+from ryusa.campaigns.sweep.measures import refuse_measure
 from ryusa.casefile import explain, read_text, resolved
 from ryusa.casefile.builders.values import stream_cells
 from ryusa.casefile.row.values import critical_depth, dam_span, deepest, highest_water, reaches, row_plan
@@ -26,7 +27,6 @@ from ryusa.measure.walls import walls
 from ryusa.model.traffic import IN, OUT
 from ryusa.report.contents import contents_of
 from ryusa.results import Results, schema
-from ryusa.studies.sweep.measures import refuse_measure
 from ryusa.units import quantity
 from ryusa.water._kernel import parameters_of
 from ryusa.water.row_coupling import RowCoupling

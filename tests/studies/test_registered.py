@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.studies import validation
-from ryusa.studies.osada2004.study import PAPER
-from ryusa.studies.validation.study import VALIDATION
 from ryusa.study import Band
 from ryusa.study.registration import TEXTS, RegisteredClaim, limits_of
+from ryusa_studies import validation
+from ryusa_studies.osada2004.study import PAPER
+from ryusa_studies.validation.study import VALIDATION
 
 LISTED = Path(__file__).with_name("registered.txt")
 STUDIES = {one.name: one.registration for one in (PAPER, VALIDATION) if one.registration is not None}

@@ -14,12 +14,12 @@ import pytest
 from ryusa.casefile import resolved
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
-from ryusa.studies.osada2004._parts import paper_run
 from ryusa.study import CostEstimate, Plan, ProgressLines, StudyProgress, estimate_cost, executors
 from ryusa.study import carry_out as carry_out_tasks
 from ryusa.study import cost as cost_module
 from ryusa.study import runs as runs_module
 from ryusa.study.executors import executor_of
+from ryusa_studies.osada2004._parts import paper_run
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 

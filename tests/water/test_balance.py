@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.laws.families import Buoyancy
-from ryusa.studies.validation.balance import ChannelFlow
+from ryusa_studies.validation.balance import ChannelFlow
 
 
 @pytest.mark.full

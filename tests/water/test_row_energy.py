@@ -10,9 +10,9 @@ from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, SurfaceRule
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd, RowState
 from ryusa.model.row_energy import ROW_LOSSES, RowTerm, row_imbalance
-from ryusa.studies.validation import river_energy
 from ryusa.water import steady
 from ryusa.water.row import GrainAction, advance_row, row_at_rest
+from ryusa_studies.validation import river_energy
 
 G, RHO = 9.80665, 1000.0
 WALLS = (RowEnd(EndKind.WALL), RowEnd(EndKind.WALL))

@@ -1,15 +1,14 @@
-"""Case files that come with the package: general ones here, those of a study beside that study."""
+"""Case files that come with the package: general ones here, those of the studies in a folder each."""
 
 from pathlib import Path
 
 _HERE = Path(__file__).resolve().parent
-_STUDIES = _HERE.parent / "studies"
 
 # What comes before the name of a case on the command line, and the folder that holds such cases.
 FOLDERS = {
     "": _HERE,
-    "paper": _STUDIES / "osada2004" / "cases",
-    "validation": _STUDIES / "validation" / "cases",
+    "paper": _HERE / "paper",
+    "validation": _HERE / "validation",
 }
 
 

@@ -22,7 +22,7 @@ from ryusa.cli.study import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ryusa.studies.calibrate import Calibration, CalibrationAsked
+    from ryusa.campaigns.calibrate import Calibration, CalibrationAsked
 
 
 UNMOVED = (
@@ -78,15 +78,15 @@ def calibrate(
     numbers; exit code 4 where the model does not reach the observations. The same
     command continues an interrupted calibration. Needs the extra calibrate.
     """
-    from ryusa.errors import ResultsError
-    from ryusa.studies.calibrate import (
+    from ryusa.campaigns.calibrate import (
         carry_out_calibration,
         read_calibration,
         refuse_truths,
         write_calibration,
     )
-    from ryusa.studies.calibrate.page import LOG
-    from ryusa.studies.sweep.table import unmoved_by_seeds
+    from ryusa.campaigns.calibrate.page import LOG
+    from ryusa.campaigns.sweep.table import unmoved_by_seeds
+    from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
 
     asked = read_calibration(study)
@@ -121,9 +121,9 @@ def calibrate(
 
 def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int, extend: int) -> None:
     """Parameters, quantities, and the cost of all runs."""
+    from ryusa.campaigns.calibrate.design import filling_points
+    from ryusa.campaigns.calibrate.runs import RUNS, CaseRuns
     from ryusa.running.folder import format_bytes
-    from ryusa.studies.calibrate.design import filling_points
-    from ryusa.studies.calibrate.runs import RUNS, CaseRuns
     from ryusa.study import duration
     from ryusa.study.cost import basis_of, by_cores
     from ryusa.study.executors import executor_of
@@ -175,8 +175,8 @@ def _print(made: "Calibration") -> None:
 
 
 def _print_observations(made: "Calibration") -> None:
-    from ryusa.studies.calibrate.sentences import shown
-    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+    from ryusa.campaigns.calibrate.sentences import shown
+    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
 
     rows: list[tuple[str, ...]] = []
     for one, compared, si in zip(
@@ -194,7 +194,7 @@ def _print_observations(made: "Calibration") -> None:
 
 
 def _print_parameters(made: "Calibration") -> None:
-    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
 
     rows = [
         (
@@ -209,8 +209,8 @@ def _print_parameters(made: "Calibration") -> None:
 
 
 def _print_predictions(made: "Calibration") -> None:
-    from ryusa.studies.calibrate.sentences import shown
-    from ryusa.studies.calibrate.tables import printed_interval, printed_number
+    from ryusa.campaigns.calibrate.sentences import shown
+    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
 
     if not made.verdict.reached:
         return

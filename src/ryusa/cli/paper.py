@@ -20,6 +20,7 @@ from ryusa.cli.study import (
     carried_out,
     console,
     executor_at,
+    find_studies,
     finish,
     listing,
     numbers_table,
@@ -78,7 +79,8 @@ def paper(
     An interrupted study continues where it stopped when the same command is
     given again: finished runs are opened. The numbers depend on the seeds alone.
     """
-    from ryusa.studies.osada2004.study import PAPER
+    find_studies()
+    from ryusa_studies.osada2004.study import PAPER
 
     plan, where = plan_of(quick, full, seeds, SEEDS), executor_at(on, jobs)
     chosen = None if not names else [one for name in names for one in _known(name)]
@@ -96,7 +98,7 @@ def _known(word: str) -> list[str]:
     """Experiments that a word means: their name, the paper's way of writing a figure, or a claim."""
     from ryusa.errors import CaseError
     from ryusa.spelling import nearest_word
-    from ryusa.studies.osada2004.study import NAMES, PAPER
+    from ryusa_studies.osada2004.study import NAMES, PAPER
 
     plain = re.sub(r"[\s.]+", "", word.lower())
     figure = re.fullmatch(r"(?:figure|fig)?0*(\d+)(.*)", plain)
@@ -113,8 +115,8 @@ def _known(word: str) -> list[str]:
 
 
 def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
-    from ryusa.studies.osada2004.study import NAMES, PAPER
     from ryusa.study import Task, estimate_cost
+    from ryusa_studies.osada2004.study import NAMES, PAPER
 
     every: list[Task] = []
     with listing(("name", "what it answers", "claims")) as table:

@@ -26,7 +26,7 @@ from ryusa.cli.study import (
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
-    from ryusa.studies.soften import Softening
+    from ryusa.campaigns.soften import Softening
 
 Measure = Annotated[
     str,
@@ -95,7 +95,7 @@ def soften(
     stiffness and the steps saved, or why it cannot be said (exit code 3).
     Finished runs are opened when the command is given again.
     """
-    from ryusa.studies.soften import plan_of_seeds, study_of
+    from ryusa.campaigns.soften import plan_of_seeds, study_of
 
     plan, where = plan_of_seeds(plan_of(False, False, seeds).seeds), executor_at(on, jobs)
     study = study_of(

@@ -270,6 +270,29 @@ def print_counts(ledger: "Ledger") -> None:
     typer.echo("; ".join(filter(None, [*lines, checks(entries)])))
 
 
+def find_studies() -> None:
+    """Make `ryusa_studies` importable: as installed, or from the checkout that holds this package.
+
+    Raises
+    ------
+    ResultsError : it is in neither.
+    """
+    import sys
+    from importlib.util import find_spec
+
+    import ryusa
+    from ryusa.errors import ResultsError
+
+    if find_spec("ryusa_studies") is None:
+        beside = Path(ryusa.__file__).resolve().parents[2] / "studies"
+        if not (beside / "ryusa_studies").is_dir():
+            raise ResultsError(
+                "the paper and the validation are not installed: pip install 'ryusa[studies]', or type the "
+                "command with the python of a checkout of ryusa"
+            )
+        sys.path.append(str(beside))  # processes that carry out runs are given the same path
+
+
 def executor_at(on: str, jobs: int | None) -> "RunExecutor":
     """Executor of the options `--on` and `-j`; all cores of this machine if the latter is not given."""
     from ryusa.study.executors import executor_of

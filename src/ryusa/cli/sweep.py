@@ -24,8 +24,8 @@ from ryusa.cli.study import (
 )
 
 if TYPE_CHECKING:
-    from ryusa.studies.sweep import SweepPlan
-    from ryusa.studies.sweep.carry import Sweep
+    from ryusa.campaigns.sweep import SweepPlan
+    from ryusa.campaigns.sweep.carry import Sweep
 
 MOST_LISTED = 50  # settings
 MOST_BESIDE = 2  # keys that stand beside a quantity; of more, the number of the setting does
@@ -102,9 +102,9 @@ def sweep(
     an interrupted sweep: finished runs are opened, others go on where they were.
     """  # fmt: skip
     # One function: two thirds of it are the options of the command, which typer reads from its signature.
+    from ryusa.campaigns.sweep import carry_out_sweep, write_sweep
+    from ryusa.campaigns.sweep.folder import refuse_folder
     from ryusa.errors import ResultsError
-    from ryusa.studies.sweep import carry_out_sweep, write_sweep
-    from ryusa.studies.sweep.folder import refuse_folder
     from ryusa.study import ProgressLines
 
     where = executor_at(on, jobs)
@@ -148,10 +148,10 @@ def _planned(
     pages: bool,
 ) -> "SweepPlan":
     """The sweep of the command, or of a file with a table [sweep]; every case is checked."""
+    from ryusa.campaigns.sweep import plan_sweep, seeds_of
+    from ryusa.campaigns.sweep.asked import axes_of_words, is_sweep_file, read_sweep
+    from ryusa.campaigns.sweep.design import GRID, design_of
     from ryusa.errors import CaseError
-    from ryusa.studies.sweep import plan_sweep, seeds_of
-    from ryusa.studies.sweep.asked import axes_of_words, is_sweep_file, read_sweep
-    from ryusa.studies.sweep.design import GRID, design_of
 
     given = None if seeds is None else plan_of(False, False, seeds).seeds
     if is_sweep_file(case):
@@ -180,9 +180,9 @@ def _words(
 
 def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], again: bool) -> None:
     """Write the scripts of another scheduler, and say how to submit them."""
+    from ryusa.campaigns.sweep.slurm import emit_slurm, submission
     from ryusa.errors import CaseError, ResultsError
     from ryusa.spelling import known_word
-    from ryusa.studies.sweep.slurm import emit_slurm, submission
 
     known_word(what, ("slurm",), "--emit")
     if again:
@@ -206,7 +206,7 @@ def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from ryusa.studies.sweep.folder import RUNS
+    from ryusa.campaigns.sweep.folder import RUNS
     from ryusa.study import estimate_cost
     from ryusa.study.cost import by_cores
 
@@ -263,7 +263,7 @@ def _print(made: "Sweep") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from ryusa.studies.sweep.part import short_names
+    from ryusa.campaigns.sweep.part import short_names
 
     plan, quantities = made.plan, made.quantities
     keys = short_names(plan.design.keys)

@@ -20,6 +20,7 @@ from ryusa.cli.study import (
     carried_out,
     console,
     executor_at,
+    find_studies,
     finish,
     listing,
     numbers_table,
@@ -78,10 +79,12 @@ def validate(
     An interrupted validation continues where it stopped when the same command
     is given again. Exits with 4 where something lies outside its tolerance.
     """
-    from ryusa.studies.validation.study import VALIDATION
     from ryusa.study import Outcome
     from ryusa.study.kept import as_registered, read_ledger
     from ryusa.study.verdicts import refuse_other_study
+
+    find_studies()
+    from ryusa_studies.validation.study import VALIDATION
 
     plan, where = plan_of(quick, full, seeds), executor_at(on, jobs)
     chosen = None if not names else [_known(name) for name in names]
@@ -106,14 +109,14 @@ def validate(
 def _known(word: str) -> str:
     """Name of a check; hyphens as on the page are understood."""
     from ryusa.spelling import known_word
-    from ryusa.studies.validation.study import NAMES
+    from ryusa_studies.validation.study import NAMES
 
     return known_word(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
 
 
 def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
-    from ryusa.studies.validation.study import NAMES, load
     from ryusa.study import Task, estimate_cost
+    from ryusa_studies.validation.study import NAMES, load
 
     every: list[Task] = []
     with listing(("name", "what it checks")) as table:

@@ -2,14 +2,11 @@
 
 from ryusa.figures.collisions import collision_times
 from ryusa.figures.contact import StiffnessBand, StiffnessCurve, StiffnessPoints, over_stiffness, turning
-from ryusa.figures.drops import QuotedPoint, ReboundCurve, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
 from ryusa.figures.forces import forces
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.profiles import profiles
 from ryusa.figures.repose import surface
-from ryusa.figures.rods import rod_lengths, rods
-from ryusa.figures.sensitivity import SensitivityRow, sensitivity
 from ryusa.figures.sizes import sizes
 from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
@@ -21,27 +18,18 @@ from ryusa.figures.water import water
 
 __all__ = [
     "Formula",
-    "QuotedPoint",
     "Rates",
-    "ReboundCurve",
-    "SensitivityRow",
     "StiffnessBand",
     "StiffnessCurve",
     "StiffnessPoints",
     "collision_times",
     "contact_times",
-    "drop_chart",
     "energy",
     "forces",
     "hops",
-    "over_speed",
     "over_stiffness",
     "profiles",
-    "rebounds",
-    "rod_lengths",
-    "rods",
     "save",
-    "sensitivity",
     "sizes",
     "snapshot",
     "spin",

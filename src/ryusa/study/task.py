@@ -264,15 +264,15 @@ class Calculation(Task):
     The function takes the arguments by name and returns a mapping from names to arrays or numbers.
     """
 
-    module: str  # such as "ryusa.studies.validation.suspension"
+    module: str  # such as "ryusa_studies.validation.suspension"
     function: str
     arguments: tuple[tuple[str, Any], ...] = ()  # sorted; numbers, words, tuples of them
     seconds: float = 0.1  # estimated core seconds
 
     @property
     def _module(self) -> str:
-        """Module name in kept folders, without `studies`, so that results of earlier versions stay valid."""
-        return self.module.replace("ryusa.studies.", "ryusa.", 1)
+        """Module name in kept folders, without its package: results of earlier versions stay valid."""
+        return self.module.replace("ryusa.campaigns.", "ryusa.", 1).replace("ryusa_studies.", "ryusa.", 1)
 
     @property
     def _name(self) -> str:

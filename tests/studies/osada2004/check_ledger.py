@@ -3,9 +3,9 @@
 import sys
 from pathlib import Path
 
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import PAPER
 from ryusa.study.kept import read_ledger
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import PAPER
 
 
 def faults(ledger):

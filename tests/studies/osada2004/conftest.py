@@ -4,12 +4,12 @@ from pathlib import Path
 import pytest
 
 from ryusa.figures.style import new, save
-from ryusa.studies.osada2004._parts import PHI, ROTATION
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Band, Finding, Interval, Level, Plan, Trial
 from ryusa.study.entry import LedgerEntry
 from ryusa.study.ledger import Ledger
+from ryusa_studies.osada2004._parts import PHI, ROTATION
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import PAPER
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
 NASTY = "<script>alert('x')</script> & \"quotes\" {{ 7 * 7 }}"

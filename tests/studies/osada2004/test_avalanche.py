@@ -9,9 +9,11 @@ import pytest
 
 from ryusa.measure import Layers, Profiles, Tracks
 from ryusa.measure.table import Averages
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import _avalanche, fig12_avalanche, fig14, fig15, fig16
-from ryusa.studies.osada2004._avalanche import (
+from ryusa.study import Band, Level, Outcome, Plan, carry_out
+from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import _avalanche, fig12_avalanche, fig14, fig15, fig16
+from ryusa_studies.osada2004._avalanche import (
     ALL,
     BETWEEN,
     SHIPPED,
@@ -21,10 +23,8 @@ from ryusa.studies.osada2004._avalanche import (
     Ways,
     Window,
 )
-from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP
-from ryusa.studies.osada2004.study import load
-from ryusa.study import Band, Level, Outcome, Plan, carry_out
-from ryusa.study.registration import Registration
+from ryusa_studies.osada2004._parts import PHI, ROTATION, SLIP
+from ryusa_studies.osada2004.study import load
 
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))
 QUICK = Plan(Level.QUICK, (1,))

@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.osada2004 import bed18
-from ryusa.studies.osada2004.bed18 import MOVING, REST, SETTLED, SLOPE, START, WITH, TiltedBedRun
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa_studies.osada2004 import bed18
+from ryusa_studies.osada2004.bed18 import MOVING, REST, SETTLED, SLOPE, START, WITH, TiltedBedRun
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

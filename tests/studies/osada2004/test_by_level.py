@@ -1,5 +1,5 @@
-from ryusa.studies.osada2004._parts import PHI, SLIP
-from ryusa.studies.osada2004.by_level import LevelCell, tables
+from ryusa_studies.osada2004._parts import PHI, SLIP
+from ryusa_studies.osada2004.by_level import LevelCell, tables
 
 
 def claim(name, outcomes, names=(PHI, SLIP), decides=None):

@@ -1,9 +1,9 @@
 import runpy
 from pathlib import Path
 
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Outcome
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import PAPER
 
 faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
 

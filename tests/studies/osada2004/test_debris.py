@@ -8,20 +8,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ryusa.studies.osada2004 import _debris, fig17, fig17_free, fig18, long_contacts
-from ryusa.studies.osada2004._bands import band
-from ryusa.studies.osada2004._debris import AMOUNT, SHIPPED
-from ryusa.studies.osada2004._debris_run import (
+from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa.study.registration import Registration
+from ryusa_studies.osada2004 import _debris, fig17, fig17_free, fig18, long_contacts
+from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._debris import AMOUNT, SHIPPED
+from ryusa_studies.osada2004._debris_run import (
     NEAR_SURFACE,
     Debris,
     DebrisContacts,
     NearSurface,
     concentration,
 )
-from ryusa.studies.osada2004._parts import PARTING, PHI, START
-from ryusa.studies.osada2004.study import load
-from ryusa.study import Level, Outcome, Plan, carry_out
-from ryusa.study.registration import Registration
+from ryusa_studies.osada2004._parts import PARTING, PHI, START
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ryusa.studies.osada2004 import debris_river as part
-from ryusa.studies.osada2004.study import REGISTRATION
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.osada2004 import debris_river as part
+from ryusa_studies.osada2004.study import REGISTRATION
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

@@ -6,13 +6,13 @@ import pytest
 
 from ryusa.casefile import derive, resolved
 from ryusa.laws.collision import collision_time, overlap_max
-from ryusa.studies.osada2004 import _drops, fig04, fig05, fig08, fig11, fig12, pair, steps
-from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._factors import n_settings
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
 from ryusa.study.registration import Registration
 from ryusa.units import quantity
+from ryusa_studies.osada2004 import _drops, fig04, fig05, fig08, fig11, fig12, pair, steps
+from ryusa_studies.osada2004._drops import DropRun, Setup
+from ryusa_studies.osada2004._factors import n_settings
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1,))

@@ -1,10 +1,10 @@
 import pytest
 
 from ryusa.errors import CaseError
-from ryusa.studies.osada2004._parts import paper_run
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import NAMES, load
 from ryusa.study import CaseRun, Level, Plan, carry_out
+from ryusa_studies.osada2004._parts import paper_run
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import NAMES, load
 
 
 def faults_of(name, level):

@@ -6,10 +6,10 @@ import pytest
 
 from ryusa.casefile import derive
 from ryusa.measure import Vibration
-from ryusa.studies.osada2004 import fig10
-from ryusa.studies.osada2004.fig10 import EULER, ONE_STEP, OURS, SOFT, STIFF, SUMMED, Fall
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa_studies.osada2004 import fig10
+from ryusa_studies.osada2004.fig10 import EULER, ONE_STEP, OURS, SOFT, STIFF, SUMMED, Fall
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

@@ -10,13 +10,13 @@ import pytest
 from ryusa.errors import OverlapTooLarge, RunError, WaterError
 from ryusa.laws import transport
 from ryusa.laws.debris import equilibrium_concentration
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import fig17_egashira as part
-from ryusa.studies.osada2004._egashira import DebrisFlow
-from ryusa.studies.osada2004._parallel import parallel
-from ryusa.studies.osada2004.fig17_egashira import BesideClosedForms
 from ryusa.study import Level, Outcome, Plan
 from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import fig17_egashira as part
+from ryusa_studies.osada2004._egashira import DebrisFlow
+from ryusa_studies.osada2004._parallel import parallel
+from ryusa_studies.osada2004.fig17_egashira import BesideClosedForms
 
 QUICK, STANDARD = Plan(Level.QUICK, (1,)), Plan(Level.STANDARD, (1, 2))
 ITO = DebrisFlow(math.radians(15.2), 0.0148, 0.00218, 2650.0, 1000.0, 9.8, math.radians(38.0))

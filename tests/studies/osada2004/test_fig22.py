@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from ryusa.measure import Averages, Rods
-from ryusa.studies.osada2004 import _debris, fig22, fig22_free
-from ryusa.studies.osada2004._movable_bed import MovableBedRun
-from ryusa.studies.osada2004.fig22 import FREE, LOCKED, SLOPE
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
 from ryusa.study.registration import Registration
+from ryusa_studies.osada2004 import _debris, fig22, fig22_free
+from ryusa_studies.osada2004._movable_bed import MovableBedRun
+from ryusa_studies.osada2004.fig22 import FREE, LOCKED, SLOPE
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import _film, film
-from ryusa.studies.osada2004._film import COLLISION, CUT, DESIGNS, FLOWS, FPS, RESOLUTION, SEEN, SLOWER
-from ryusa.studies.osada2004.film import Filmed, FilmNumbers
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
 from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import _film, film
+from ryusa_studies.osada2004._film import COLLISION, CUT, DESIGNS, FLOWS, FPS, RESOLUTION, SEEN, SLOWER
+from ryusa_studies.osada2004.film import Filmed, FilmNumbers
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

@@ -6,10 +6,10 @@ import pytest
 
 from ryusa.casefile import derive
 from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
-from ryusa.studies.osada2004 import _heap, eq13, fig19
-from ryusa.studies.osada2004._parts import PACKING, PHI, SLIP
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Band, Level, Outcome, Plan
+from ryusa_studies.osada2004 import _heap, eq13, fig19
+from ryusa_studies.osada2004._parts import PACKING, PHI, SLIP
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

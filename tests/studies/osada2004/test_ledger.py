@@ -5,11 +5,11 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.figures.style import new
-from ryusa.studies.osada2004._parts import paper_run
-from ryusa.studies.osada2004.study import PaperStudy
 from ryusa.study import Band, Finding, Level, Outcome, Plan, Trial, ledger, over_seeds
 from ryusa.study.ledger import make as make_study
 from ryusa.study.page import write
+from ryusa_studies.osada2004._parts import paper_run
+from ryusa_studies.osada2004.study import PaperStudy
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 

@@ -11,11 +11,11 @@ from PIL import Image, ImageChops
 from ryusa.cli.study import print_counts
 from ryusa.errors import ResultsError
 from ryusa.running import disk
-from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Level, Outcome, Plan, html, page
 from ryusa.study.entry import plain_entry
 from ryusa.study.page import write
+from ryusa_studies.osada2004.claims import CLAIMS
+from ryusa_studies.osada2004.study import PAPER
 
 KEYS = {
     "id", "verdict", "outcome", "statement", "settings", "decided_by", "trials", "caution", "condition",

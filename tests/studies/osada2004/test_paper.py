@@ -6,7 +6,7 @@ import importlib.util
 import pytest
 
 from ryusa.laws.collision import collision_time
-from ryusa.studies.osada2004 import claims, paper
+from ryusa_studies.osada2004 import claims, paper
 
 
 def test_all_thirteen_equations_are_there():

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import bed18, eq13, fig10, fig19
 from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import bed18, eq13, fig10, fig19
 
 DESIGNS = {
     "fig10-soft": fig10.DESIGN, "fig10-stiff": fig10.DESIGN, "fig10-rule": fig10.OTHERS,

@@ -7,12 +7,12 @@ import pytest
 from tests.studies.osada2004.test_heaps import heap
 
 from ryusa.laws import rolling
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import rolling_blind as part
-from ryusa.studies.osada2004._rolling_fit import HeapFit
-from ryusa.studies.osada2004.rolling_friction import NONE, Flow
 from ryusa.study import Level, Outcome, Plan
 from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import rolling_blind as part
+from ryusa_studies.osada2004._rolling_fit import HeapFit
+from ryusa_studies.osada2004.rolling_friction import NONE, Flow
 
 QUICK, STANDARD = Plan(Level.QUICK, (1,)), Plan(Level.STANDARD, (1, 2, 3, 4))
 TRIED = tuple(map(float, part.COEFFICIENTS))

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from tests.studies.osada2004.test_heaps import heap
 
-from ryusa.studies import osada2004
-from ryusa.studies.osada2004 import rolling_friction as part
-from ryusa.studies.osada2004._rolling_fit import SlopeFit, SpinFit, best_pair, limits
-from ryusa.studies.osada2004.rolling_friction import NONE, PAIR, Flow
 from ryusa.study import Level, Outcome, Plan
 from ryusa.study.registration import Registration
+from ryusa_studies import osada2004
+from ryusa_studies.osada2004 import rolling_friction as part
+from ryusa_studies.osada2004._rolling_fit import SlopeFit, SpinFit, best_pair, limits
+from ryusa_studies.osada2004.rolling_friction import NONE, PAIR, Flow
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

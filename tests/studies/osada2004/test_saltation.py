@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ryusa.figures.saltation import SpinPath
 from ryusa.measure import ContactTimes, Saltation, Tracks, average
 from ryusa.measure.table import Averages
-from ryusa.studies.osada2004 import _saltation, fig07, fig20, fig21, hops, spin_time, water_torque
-from ryusa.studies.osada2004._parts import CLOSURE, DRAG, PARTING, PHI, RATIO, SLIP, START
-from ryusa.studies.osada2004._saltation import K_N, NORMAL, SHIPPED, TANGENTIAL, SaltationRun
-from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
 from ryusa.study.registration import Registration
+from ryusa_studies.osada2004 import _saltation, fig07, fig20, fig21, hops, spin_time, water_torque
+from ryusa_studies.osada2004._parts import CLOSURE, DRAG, PARTING, PHI, RATIO, SLIP, START
+from ryusa_studies.osada2004._saltation import K_N, NORMAL, SHIPPED, TANGENTIAL, SaltationRun
+from ryusa_studies.osada2004.figures.saltation import SpinPath
+from ryusa_studies.osada2004.study import load
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))

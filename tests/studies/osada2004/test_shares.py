@@ -1,7 +1,7 @@
 import pytest
 
-from ryusa.studies.osada2004._shares import share_interval, share_trial
 from ryusa.study import Band
+from ryusa_studies.osada2004._shares import share_interval, share_trial
 
 MOST = Band(0.5, float("inf"), "-", "most runs")
 

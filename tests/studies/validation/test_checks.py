@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import terminal_velocity
-from ryusa.studies.validation.study import NAMES, VALIDATION, load
-from ryusa.studies.validation.suspension import expected, exponent
 from ryusa.study import CaseRun, Level, Outcome, Plan, Task, relative
 from ryusa.study.executors import Processes
 from ryusa.study.ledger import make
+from ryusa_studies.validation import terminal_velocity
+from ryusa_studies.validation.study import NAMES, VALIDATION, load
+from ryusa_studies.validation.suspension import expected, exponent
 
 LEVELS = tuple(Level)
 

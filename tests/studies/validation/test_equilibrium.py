@@ -10,8 +10,8 @@ import pytest
 from ryusa.build import scene
 from ryusa.laws.debris import equilibrium_concentration
 from ryusa.model import EVENT
-from ryusa.studies.validation import equilibrium
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import equilibrium
 
 D, RHO = 4.0e-3, 2650.0
 COLUMNS, LAYERS = 4, 10

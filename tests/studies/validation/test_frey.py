@@ -5,8 +5,8 @@ import pytest
 
 from ryusa.casefile import derive, read
 from ryusa.cases import case_path
-from ryusa.studies.validation import frey
 from ryusa.study import Interval, Level, Outcome, Plan
+from ryusa_studies.validation import frey
 
 PLAN = Plan(Level.STANDARD, (1, 2, 3))
 

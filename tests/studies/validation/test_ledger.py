@@ -10,8 +10,6 @@ import pytest
 from ryusa.cases import case_path
 from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.studies.validation.sampling import CLOSED, SAMPLING
-from ryusa.studies.validation.study import ValidationStudy, changes, table
 from ryusa.study import (
     Band,
     Known,
@@ -30,6 +28,8 @@ from ryusa.study import (
 from ryusa.study import ledger as ledger_module
 from ryusa.study.ledger import make as make_study
 from ryusa.study.page import write
+from ryusa_studies.validation.sampling import CLOSED, SAMPLING
+from ryusa_studies.validation.study import ValidationStudy, changes, table
 
 CALLS = []
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}

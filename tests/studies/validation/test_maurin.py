@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ryusa.casefile.derive import derive
-from ryusa.studies.validation import maurin
 from ryusa.study import Level, Plan
+from ryusa_studies.validation import maurin
 
 
 def test_the_published_profiles_hold_the_grains_of_the_case() -> None:

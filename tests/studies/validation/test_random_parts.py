@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import balance, gas, incline
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import balance, gas, incline
 
 SETS = ((1, 2, 3), (4, 5, 6))
 

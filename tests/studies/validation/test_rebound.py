@@ -5,7 +5,7 @@ import pytest
 
 from ryusa.laws import immersed
 from ryusa.laws.reduced import reduced
-from ryusa.studies.validation import rebound
+from ryusa_studies.validation import rebound
 
 ST = np.array(rebound.ASKED)
 

@@ -4,8 +4,8 @@ import pytest
 
 from ryusa.casefile import read
 from ryusa.cases import case_path
-from ryusa.studies.validation import river_dam as dam
 from ryusa.study import Level, Plan
+from ryusa_studies.validation import river_dam as dam
 
 
 def test_the_slope_that_carries_a_known_transport_is_found() -> None:

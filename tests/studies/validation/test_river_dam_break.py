@@ -8,8 +8,8 @@ import pytest
 
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
-from ryusa.studies.validation import river_dam_break as over_bed
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import river_dam_break as over_bed
 
 PLAN = Plan(Level.FULL, (1,))
 X = (np.arange(140) + 0.5) * 0.0125

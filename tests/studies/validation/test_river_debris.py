@@ -7,10 +7,10 @@ import pytest
 from tests.studies.validation.test_river_impact import front
 
 from ryusa.laws.debris import discharge_over_bed, equilibrium_concentration, run_out
-from ryusa.studies.validation import river_debris as debris
-from ryusa.studies.validation import river_grids as grids
-from ryusa.studies.validation import river_impact as impact
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import river_debris as debris
+from ryusa_studies.validation import river_grids as grids
+from ryusa_studies.validation import river_impact as impact
 
 PLAN = Plan(Level.FULL, (1,))
 X = (np.arange(76) + 0.5) * 0.025

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import river_delta as delta
+from ryusa_studies.validation import river_delta as delta
 
 DX, HIGH, REPOSE = 0.015, 0.06, math.radians(30.0)
 X = (np.arange(80) + 0.5) * DX

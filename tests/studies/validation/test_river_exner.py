@@ -7,8 +7,8 @@ import pytest
 
 from ryusa.casefile import read
 from ryusa.cases import case_path
-from ryusa.studies.validation import river_exner as exner
 from ryusa.study import Level, Plan
+from ryusa_studies.validation import river_exner as exner
 
 S, H, K = 0.02, 0.025, 0.02
 

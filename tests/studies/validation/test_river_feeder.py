@@ -5,8 +5,8 @@ import pytest
 
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
-from ryusa.studies.validation import river_feeder as feeder
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import river_feeder as feeder
 
 PLAN = Plan(Level.FULL, (1,))
 T = np.linspace(3.0, 10.0, 71)

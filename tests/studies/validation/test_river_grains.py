@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import river_bands, river_grains
 from ryusa.study import CaseRun, Level, Outcome, Plan
+from ryusa_studies.validation import river_bands, river_grains
 
 PLAN = Plan(Level.FULL, (1,))
 Z = np.linspace(0.0, 0.02, 20)

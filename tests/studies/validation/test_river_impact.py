@@ -8,9 +8,9 @@ import pytest
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.laws.bore import reflected_bore
-from ryusa.studies.validation import river_debris as debris
-from ryusa.studies.validation import river_impact as impact
 from ryusa.study import Level, Plan
+from ryusa_studies.validation import river_debris as debris
+from ryusa_studies.validation import river_impact as impact
 
 
 def front(share: float, end: float = 0.8) -> dict:

@@ -9,8 +9,8 @@ from tests.measure.made_rows import BALL, WIDTH, row_of, run_of
 
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
-from ryusa.studies.validation import river_overload as overload
 from ryusa.study import Level, Plan
+from ryusa_studies.validation import river_overload as overload
 
 X = np.linspace(0.0, 3.0, 31)
 EXTRA, CORE, DIFFUSION, STEEP = 3.6e-4, 0.6, 0.03, 5.4

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from ryusa.studies.validation.sampling import CLOSED, SAMPLING, sampling_lines, sampling_table
-from ryusa.studies.validation.study import NAMES, load
 from ryusa.study import Level, Plan
+from ryusa_studies.validation.sampling import CLOSED, SAMPLING, sampling_lines, sampling_table
+from ryusa_studies.validation.study import NAMES, load
 
 FULL_ALONE = {
     "silo",

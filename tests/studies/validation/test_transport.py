@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import transport
 from ryusa.study import Level, Outcome, Plan
+from ryusa_studies.validation import transport
 
 PLANS = {level: Plan(level, (1,) if level is Level.QUICK else (1, 2, 3)) for level in Level}
 

@@ -1,0 +1,118 @@
+"""Many runs of one case over settings and seeds, with one table and one page: `ryusa sweep`."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from ryusa.campaigns.sweep.asked import Over, axes_of, is_sweep_file, listed, read_sweep
+from ryusa.campaigns.sweep.carry import Sweep, carry_out_sweep
+from ryusa.campaigns.sweep.design import GRID, LIST, SweepDesign, design_of
+from ryusa.campaigns.sweep.page import write_sweep
+from ryusa.campaigns.sweep.plan import SweepPlan, plan_sweep
+from ryusa.errors import CaseError
+from ryusa.study import ProgressLines
+from ryusa.study.executors import DEFAULT, executor_of
+
+__all__ = [
+    "Sweep",
+    "SweepDesign",
+    "SweepPlan",
+    "carry_out_sweep",
+    "plan_sweep",
+    "seeds_of",
+    "sweep",
+    "write_sweep",
+]
+
+SEEDS = 3
+
+
+def sweep(
+    case: Path | str,
+    over: Over = (),
+    measure: str | Sequence[str] = (),
+    *,
+    design: str = GRID,
+    points: int | None = None,
+    design_seed: int = 1,
+    seeds: int | Sequence[int] | None = None,
+    overrides: Mapping[str, str] | None = None,
+    folder: Path | str | None = None,
+    jobs: int | None = None,
+    on: str = DEFAULT,
+    again: bool = False,
+    pages: bool = True,
+    parquet: bool = False,
+    progress: bool = True,
+) -> Sweep:
+    """Run a case at several settings with several seeds, and return the table of its measures.
+
+    Parameters
+    ----------
+    case : case file; or a TOML file with a table `[sweep]`, which holds `over` and `design`.
+    over : values by key, such as `{"motion.slope": [0.01, 0.02], "grains.diameter": ["2 mm", "4 mm"]}`; for
+        keys that change together several mappings in a list, each one axis; for a design "list" one mapping
+        of keys to values for each setting. A sampled design takes ranges, `{"low": 0.01, "high": 0.02}`, with
+        `"scale": "log"` if wished.
+    measure : name of a measure, or several, as for `ryusa measure`.
+    design : "grid", "list", "latin hypercube" or "sobol".
+    points : number of points of a Latin hypercube or a Sobol sequence.
+    design_seed : seed of those points.
+    seeds : number of seeds of each setting, or the seeds; default 3.
+    overrides : keys set in all runs, as `ryusa run --set` takes them.
+    folder : for table, page, pictures and runs; default runs/sweep-CASE. Finished runs in it are opened, and
+        interrupted ones go on.
+    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
+    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
+    again : make all runs anew.
+    pages : write a page for each run.
+    parquet : write the table as Parquet too; needs pyarrow.
+    progress : whether to print cost and progress on stderr.
+
+    Raises
+    ------
+    CaseError : a case cannot be run, or an argument is not allowed; nothing was run.
+    ResultsError : the folder holds another sweep, or runs of the case as it was before.
+    """
+    names = (measure,) if isinstance(measure, str) else tuple(measure)
+    path, given = Path(case), dict(overrides or {})
+    found = None
+    if is_sweep_file(path):
+        if over or design != GRID or points is not None:
+            raise CaseError("over", None, f"stands in {path.name}, which has a table [sweep]")
+        file = read_sweep(path)
+        found, path, given = file.design, file.case, {**file.overrides, **given}
+        names, seeds = names or file.measures, file.seeds if seeds is None else seeds
+    if found is None:
+        found = _settings(design, over, points, design_seed)
+    plan = plan_sweep(path, found, seeds_of(seeds), names, overrides=given, pages=pages)
+    out = Path("runs") / f"sweep-{Path(case).stem}" if folder is None else Path(folder)
+    made = carry_out_sweep(
+        plan, out, executor_of(on, jobs), again=again, parquet=parquet,
+        progress=ProgressLines() if progress else None,
+    )  # fmt: skip
+    write_sweep(made, "ryusa.sweep")
+    return made
+
+
+def _settings(design: str, over: Over, points: int | None, design_seed: int) -> SweepDesign:
+    axes = listed(over) if design == LIST else axes_of(over)
+    return design_of(design, axes, points=points, seed=design_seed)
+
+
+def seeds_of(seeds: int | Sequence[int] | None) -> tuple[int, ...]:
+    """Seeds from their number, or as they are.
+
+    Raises
+    ------
+    CaseError : less than one.
+
+    >>> seeds_of(2), seeds_of([7, 9])
+    ((1, 2), (7, 9))
+    """
+    if seeds is None:
+        seeds = SEEDS
+    if not isinstance(seeds, int):
+        return tuple(seeds)
+    if seeds < 1:
+        raise CaseError("seeds", seeds, "must be one seed or more")
+    return tuple(range(1, seeds + 1))

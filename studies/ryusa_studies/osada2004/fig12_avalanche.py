@@ -1,0 +1,77 @@
+"""Fig. 12 in a flow: the share of the contacts of large grains that lie in the stable band."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
+from ryusa_studies.osada2004 import _avalanche
+from ryusa_studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOW, RunPair
+from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._parts import Found, Plan
+
+FIGURE = "fig12"
+TITLE = "Contacts of large grains in the stable band, in an avalanche"
+CLAIMS = ("fig12-avalanche",)
+PARTS: Mapping[str, Callable[[RunPair], float]] = {
+    f"contacts with the bed in the band, {SOFT}": lambda pair: pair.soft.bed_in_band,
+    f"all contacts in the band, {SOFT}": lambda pair: pair.soft.in_band,
+}
+SHOWN: Mapping[str, Callable[[RunPair], float]] = {
+    f"contacts with the bed in the band, {STIFF}": lambda pair: pair.stiff.bed_in_band,
+    f"all contacts in the band, {STIFF}": lambda pair: pair.stiff.in_band,
+}
+
+tasks, measure = _avalanche.tasks, _avalanche.measure
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Most contacts of 0.01 s lie in the band."""
+    judged: list[Trial] = []
+    beside: list[Trial] = []
+    for chosen, window in _avalanche.sets(plan):
+        choices = {**chosen, WINDOW: window}
+        runs = _avalanche.pairs(found, plan, chosen, window)
+        for part, value in PARTS.items():
+            one = seeds_trial(part, choices, [value(pair) for pair in runs], band("fig12-avalanche", part))
+            judged.append(_share(one))
+        for part, value in SHOWN.items():
+            shown = over_seeds([value(pair) for pair in runs], "-")
+            beside.append(_share(Trial(part, choices, shown, None)))
+    base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    speed = short(sum(pair.soft.speed for pair in base) / len(base))
+    return (
+        Finding(
+            "fig12-avalanche",
+            tuple(judged),
+            "The largest overlap of an impact is proportional to its speed times the collision time; and in "
+            "a dense flow a contact of 0.01 s also carries the weight of the grains above. As shipped the "
+            f"grains flow at {speed} m/s.",
+            _avalanche.SETTLED,
+            beside=tuple(beside),
+            readings=(WINDOW,),
+        ),
+    )
+
+
+def _share(one: Trial) -> Trial:
+    """Let the interval of a share end at 0 and 1."""
+    low, high = max(one.found.low, 0.0), min(one.found.high, 1.0)
+    return replace(one, found=replace(one.found, low=low, high=high)) if one.found.value >= 0.0 else one
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return _avalanche.rows(found, plan)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Profiles of the flow whose contacts are counted."""
+    (pair, *_) = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    return {
+        "fig12-avalanche": figures.profiles(
+            {SOFT: pair.soft.profile, STIFF: pair.stiff.profile}, ("phi", "v_x")
+        )
+    }

@@ -1,0 +1,184 @@
+"""Fig. 19: a heap between walls, one of which goes at once; the slope left, rotation locked or free."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from matplotlib.figure import Figure
+
+from ryusa.figures.repose import surface as draw_surface
+from ryusa.results import Results
+from ryusa.study import Design, Factor, Finding, Trial
+from ryusa_studies.osada2004 import _heap
+from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._factors import (
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa_studies.osada2004._parts import PACKING, PHI, ROTATION, SLIP, CaseRun, Found, Plan
+from ryusa_studies.osada2004.figures.slopes import Slope, slopes
+
+FIGURE = "fig19"
+TITLE = "Slope of a heap after the removal of its wall"
+CLAIMS = ("fig19-locked", "fig19-free")
+FIT = "height range"  # of the slope: read from the same run
+WITH_FRICTION = "settled with friction"  # its angle is that of the setting
+HEAPS = Factor(
+    PACKING,
+    {
+        "500 grains within 20 %": {},
+        "sizes within 5 %": {"grains.spread": "0.05"},
+        "252 grains": {"build.columns": "18", "build.layers": "14"},
+        "floor ends at the gate": {"build.run_out": "0 cm", "build.drop": "4 cm"},
+        "smooth floor": {"build.floor": "plane", "build.run_out": "0 cm"},
+        WITH_FRICTION: {},
+    },
+)
+DESIGN = Design(
+    (
+        friction_angle(_heap.PHI_KEY),
+        SLIP_RULE,
+        PARTING_RULE,
+        STIFFNESS_RATIO,
+        HEAPS,
+        Factor(FIT, {one: {} for one in _heap.RANGES}),
+    )
+)
+SLOPE_PART, MOVING_PART = "final slope", "share of grains still moving"
+BANDS = {rotation: band(f"fig19-{rotation}", SLOPE_PART) for rotation in ("locked", "free")}
+PAPER = {"locked": 33.0, "free": 18.0}  # deg
+# Slopes of locked heaps pass what is asked between the levels of the friction angle: shown beside.
+BETWEEN = ("12 deg", "14 deg", "16 deg")
+DECIDED = {
+    "locked": "A locked grain leaves its pocket only if the slope reaches 30 deg + phi, and columns of "
+    "locked grains move as rigid bodies, so the friction angle decides the slope. With the "
+    "dashpot kept while sliding, as in Eqs. (2) and (3) as printed, a viscous force adds to the "
+    "cap, and the heap creeps at m g/eta_s.",
+    "free": "A grain that may rotate rolls out of its pocket at 30 deg whatever phi is, so friction "
+    "matters little once grains roll rather than slide. Packing and floor determine the slope: on a "
+    "smooth floor the whole heap spreads.",
+}
+
+
+def settings(plan: Plan) -> list[dict[str, str]]:
+    """Free choices tried, the shipped ones first; the same for both heaps."""
+    return DESIGN.settings(n_settings(plan))
+
+
+def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
+    """One run."""
+    changed = DESIGN.overrides(chosen)
+    if chosen[PACKING] == WITH_FRICTION:
+        changed |= {"contact.friction_angle": chosen[PHI]}
+    return _heap.run(rotation, seed, changed)
+
+
+def between(plan: Plan) -> dict[str, list[CaseRun]]:
+    """Locked heaps with friction angles between the levels, by angle."""
+    return {
+        phi: [_heap.run("locked", seed, {_heap.PHI_KEY: phi}) for seed in plan.seeds]
+        for phi in plan.pick((), BETWEEN)
+    }
+
+
+def tasks(plan: Plan) -> Sequence[CaseRun]:
+    """Locked and free under every setting and seed, and what stands beside them."""
+    runs = [run(one, rotation, seed) for rotation in BANDS for one in settings(plan) for seed in plan.seeds]
+    runs += [one for some in between(plan).values() for one in some]
+    return list(dict.fromkeys(runs))
+
+
+def measure(results: Results, one: CaseRun) -> _heap.Heap:
+    """Slope at the end."""
+    del one
+    return _heap.heap(results)
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Locked about 33 deg, free about 18 deg."""
+    return [_judged(found, plan, rotation) for rotation in BANDS]
+
+
+def _group(found: Found, plan: Plan, chosen: Mapping[str, str], rotation: str) -> list[_heap.Heap]:
+    return [found[run(chosen, rotation, seed)] for seed in plan.seeds]
+
+
+def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
+    sets = settings(plan)
+    heaps = [_group(found, plan, chosen, rotation) for chosen in sets]
+    trials: list[Trial] = []
+    still = band(f"fig19-{rotation}", MOVING_PART)
+    for chosen, group in zip(sets, heaps, strict=True):
+        trials += [
+            _heap.slope_trial(SLOPE_PART, chosen, group, chosen[FIT], BANDS[rotation]),
+            _heap.moving_trial(MOVING_PART, chosen, group, still),
+        ]
+    ranges = [math.degrees(one.found.spread) for group in heaps for one in group if not one.wall]
+    ends = [one.t_end - one.t_gate for group in heaps for one in group]
+    walls = sum(one.wall for group in heaps for one in group)
+    also = (
+        f"{walls} of {len(ends)} heaps of all settings stand as a wall",
+        f"one slope changes with the height range of the fit by up to {max(ranges, default=math.nan):.0f} "
+        "deg",
+        f"observed for {min(ends):.1f} to {max(ends):.1f} s after the removal of the gate",
+    )
+    common = {
+        ROTATION: rotation,
+        "k_n": "100 N/cm",
+        "packing, unless it says so": "settled without friction, turning; phi and rotation set 0.01 s before "
+        "the gate goes",
+    }
+    beside = tuple(
+        _heap.slope_trial(SLOPE_PART, {PHI: phi}, [found[one] for one in runs], _heap.MEAN, BANDS[rotation])
+        for phi, runs in (between(plan) if rotation == "locked" else {}).items()
+    )
+    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also, beside=beside)
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run."""
+    named = [
+        (rotation, chosen, seed, run(chosen, rotation, seed))
+        for rotation in BANDS
+        for chosen in settings(plan)
+        for seed in plan.seeds
+    ]
+    named += [
+        ("locked", {**DESIGN.base, PHI: phi}, seed, one)
+        for phi, runs in between(plan).items()
+        for seed, one in zip(plan.seeds, runs, strict=True)
+    ]
+    return [
+        {"rotation": rotation, **chosen, "seed": seed, **_heap.line(found[one])}
+        for rotation, chosen, seed, one in named
+    ]
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """The heaps as the paper shows them, and slope against friction angle."""
+    sets = settings(plan)
+    pictures: dict[str, Figure] = {}
+    for rotation in BANDS:
+        one = _heap.typical(_group(found, plan, sets[0], rotation))
+        pictures[f"fig19-{rotation}"] = draw_surface(one.seen, one.found)
+        pictures[f"fig19-{rotation}"].suptitle(f"rotation {rotation}, as shipped", fontsize=7.0)
+    series = [
+        Slope(
+            f"rotation {rotation}, slip {slip}",
+            (PAPER[rotation],),
+            [
+                (
+                    float(phi.split()[0]),
+                    [one.slope() for chosen in alike for one in _group(found, plan, chosen, rotation)],
+                )
+                for phi in DESIGN.levels[PHI]
+                if (alike := [chosen for chosen in sets if chosen[SLIP] == slip and chosen[PHI] == phi])
+            ],
+        )
+        for rotation in BANDS
+        for slip in DESIGN.levels[SLIP]
+    ]
+    pictures["fig19-slopes"] = slopes([one for one in series if one.points])
+    return pictures
