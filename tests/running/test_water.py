@@ -143,7 +143,7 @@ def test_grains_removed_by_the_timeline_no_longer_fill_the_column() -> None:
     assert water is not None and column is not None
     full = water.phi.copy()
     gone = replace(fixed, fixed_active=np.zeros(fixed.n_fixed, dtype=np.bool_))
-    water.change(gone, column)
+    water.change(gone)
     lost = (full - water.phi).sum() * column.dz * column.area
     assert lost == pytest.approx(fixed.n_fixed * math.pi / 6.0 * D**3)
     loop._steps(20)

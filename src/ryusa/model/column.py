@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import ClassVar
 
 import numpy as np
 
@@ -61,6 +62,7 @@ class Column(ByShape):
     # exchange with the grains
     interval: int = 50  # largest coupling interval [steps]
     start: Start = Start.REST
+    GROUP: ClassVar[str] = "water"  # of its datasets in a run folder
 
     @property
     def origin(self) -> float:
@@ -86,6 +88,21 @@ class Column(ByShape):
     def faces(self) -> Floats:
         """Heights of the cell faces [m], shape (n + 1,)."""
         return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
+
+    @property
+    def text(self) -> str:
+        """What it is, in words."""
+        return f"a column of {self.n} cells of water"
+
+    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
+        """Shapes of the datasets of a frame, as a run folder holds them."""
+        cells = dict.fromkeys(("u", "w", "phi", "content"), (self.n,))  # [m/s], [m/s], [-], [m]
+        faces = dict.fromkeys(("tau", "nu_t"), (self.n + 1,))  # [Pa], [m2/s]
+        return {**cells, **faces, "z_surface": (), "gradient": ()}  # [m], [Pa/m]
+
+    def first_surface(self, x: Floats) -> Floats:
+        """Height of the surface at the start at places along x [m], same shape."""
+        return np.full(x.shape, self.z_surface)
 
     def refuses(self) -> tuple[str, ...]:
         """Reasons why this column cannot be solved, one sentence each; () if there are none."""

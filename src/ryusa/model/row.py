@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,6 +98,7 @@ class ColumnRow(ByShape):
     porous: PorousSolid | None = None  # in the cells
     start: Floats | None = None  # height of the surface at the start [m], (n_segment,)
     dams: tuple[RowDam, ...] = ()  # names of what `solid` and `porous` hold
+    GROUP: ClassVar[str] = "row"  # of its datasets in a run folder
 
     @property
     def n_segment(self) -> int:
@@ -130,6 +132,24 @@ class ColumnRow(ByShape):
         if self.periodic:
             return (np.arange(n) - 1) % n, np.arange(n)
         return np.arange(n + 1), np.arange(n + 1) + 1
+
+    @property
+    def interval(self) -> int:
+        """Largest coupling interval [steps]."""
+        return self.column.interval
+
+    @property
+    def text(self) -> str:
+        """What it is, in words."""
+        return f"a row of {self.n_segment} columns of {self.column.n} cells of water"
+
+    def segment_at(self, x: Floats) -> Ints:
+        """Number of the segment at places along x [m], beyond an end of that there, same shape."""
+        return np.clip(np.floor((x - self.x_low) / self.dx), 0, self.n_segment - 1).astype(np.int64)
+
+    def first_surface(self, x: Floats) -> Floats:
+        """Height of the surface at the start at places along x [m], same shape; -inf if not given."""
+        return np.full(x.shape, -np.inf) if self.start is None else self.start[self.segment_at(x)]
 
     def frame_shapes(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the datasets of a frame of this row, as a run folder holds them."""

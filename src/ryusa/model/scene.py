@@ -260,9 +260,14 @@ class Scene(ByShape):
         return ball
 
     @property
+    def flow(self) -> Column | ColumnRow | None:
+        """What the water that feels the grains moves in; None where no water does."""
+        return self.column if self.row is None else self.row
+
+    @property
     def coupled(self) -> bool:
-        """Whether water feels the grains: a column or a row of columns."""
-        return self.column is not None or self.row is not None
+        """Whether water feels the grains."""
+        return self.flow is not None
 
     @property
     def n_fixed(self) -> int:

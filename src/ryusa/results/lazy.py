@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -213,14 +213,13 @@ class LazyFrames:
 
 
 def read_frames(
-    parts: list[Part], group: str, shapes: Mapping[str, tuple[int, ...]], later: Set[str] = frozenset()
+    parts: list[Part], group: str, shapes: Mapping[str, tuple[int, ...]]
 ) -> dict[str, NDArray[np.float64]]:
     """Read datasets of one group over all frames, each as one read-only array.
 
     Parameters
     ----------
     shapes : of one frame of each dataset.
-    later : datasets that parts of earlier versions lack, nan there.
 
     Raises
     ------
@@ -233,9 +232,6 @@ def read_frames(
         with opened(part.path) as file:
             for name, tail in shapes.items():
                 key, shape = f"{group}/{name}", (part.n_frame, *tail)
-                if name in later and key not in file:
-                    rows[name].append(np.full(shape, np.nan))
-                    continue
                 got = plain_dataset(file, key, part.path)
                 if got.shape != shape or got.dtype != np.float64:
                     raise ResultsError(

@@ -184,7 +184,7 @@ class Results:
     def water(self) -> WaterFrames | None:
         """Profiles of the water at every frame; None if the run has no water column."""
         column = self.scene.column
-        return None if column is None else read_water(self._parts, self.frames.t, column.z, column.faces)
+        return None if column is None else read_water(self._parts, self.frames.t, column)
 
     @cached_property
     def row(self) -> RowFrames | None:

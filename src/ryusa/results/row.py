@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.model import ColumnRow
-from ryusa.results import schema
 from ryusa.results.lazy import Part, read_frames
 
 Floats = NDArray[np.float64]
@@ -30,7 +29,7 @@ class RowFrames:
     tau : shear stress of the water at the bottom [Pa], shape (n_frame, n_station).
     u, w : velocity along x and upwards [m/s], shape (n_frame, n_station, n).
     energy : energy account of the water since the start, per width [J/m], indexed by
-        `model.row_energy.RowTerm`, shape (n_frame, N_ROW_TERM); nan in frames of versions that kept none.
+        `model.row_energy.RowTerm`, shape (n_frame, N_ROW_TERM).
     """
 
     row: ColumnRow
@@ -65,5 +64,5 @@ def read_row(parts: list[Part], t: Floats, row: ColumnRow) -> RowFrames:
     ------
     ResultsError : a part lacks it, or has it in another shape.
     """
-    found = read_frames(parts, schema.ROW, row.frame_shapes(), schema.LATER_IN_ROW)
+    found = read_frames(parts, row.GROUP, row.frame_shapes())
     return RowFrames(row, t, **found)

@@ -54,15 +54,8 @@ FRAME_DATASETS = {
     "omega": (np.dtype(np.float64), (3,)),  # [rad/s]
     "image": (np.dtype(np.int32), (2,)),  # periods crossed in x and y
 }
-# in a group of a part, if the run has a water column: k frames of n cells, or of n + 1 faces
-WATER = "water"
-WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
-WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
-WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
-
-# in a group of a part, if the run has a row of columns: k frames of what `ColumnRow.frame_shapes` names
-ROW = "row"
-LATER_IN_ROW = {"energy"}  # nan in frames of versions that did not have it
+# In a group of a part, if water moves in the run: k frames of what `frame_shapes` of `scene.flow` names.
+# The group is its GROUP.
 
 # impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
 WALLS = "walls"

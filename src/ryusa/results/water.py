@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.results import schema
+from ryusa.model.column import Column
 from ryusa.results.lazy import Part, read_frames
 
 Floats = NDArray[np.float64]
@@ -41,17 +41,12 @@ class WaterFrames:
     gradient: Floats
 
 
-def read_water(parts: list[Part], t: Floats, z: Floats, faces: Floats) -> WaterFrames:
+def read_water(parts: list[Part], t: Floats, column: Column) -> WaterFrames:
     """Read all profiles.
 
     Raises
     ------
     ResultsError : a part has no profiles, or profiles of another shape.
     """
-    names = {
-        **{name: (len(z),) for name in schema.WATER_CELLS},
-        **{name: (len(faces),) for name in schema.WATER_FACES},
-        **{name: () for name in schema.WATER_NUMBERS},
-    }
-    found = read_frames(parts, schema.WATER, names)
-    return WaterFrames(t=t, z=z, faces=faces, **found)
+    found = read_frames(parts, column.GROUP, column.frame_shapes())
+    return WaterFrames(t=t, z=column.z, faces=column.faces, **found)

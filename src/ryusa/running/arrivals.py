@@ -8,14 +8,14 @@ from ryusa.model import PASSAGE, Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.traffic import IN, NONE, Arrivals
 from ryusa.running.insertion import ATTEMPTS, Neighbours
-from ryusa.water.row_coupling import RowCoupling
+from ryusa.water.protocol import Fluid
 
 _STEP = 0.1  # of its diameter by which a grain is raised that has no room
 _CLEAR = 1.0e-9  # of its diameter by which it is clear of the screen
 
 
 def arriving(
-    scene: Scene, water: RowCoupling, near: Neighbours, i: int, step: int, t: float, due: float
+    scene: Scene, water: Fluid, near: Neighbours, i: int, step: int, t: float, due: float
 ) -> tuple[np.ndarray, Floats | None]:
     """Record of a grain of a feeder reach that enters, and its place; None where it finds none.
 
@@ -44,7 +44,8 @@ def arriving(
     x = feed.low[0] + (0.5 + _CLEAR) * d
     if late < traffic.interval * scene.dt:
         x += max(float(arrivals.v[k, 0]), 0.0) * late
-    row_of_water = water.row
+    row_of_water = scene.row
+    assert row_of_water is not None
     tilt = 2.0 * (float(row_of_water.bottom[0]) - feed.low[2]) / row_of_water.dx
     floor = feed.low[2] + tilt * (x - row_of_water.x_low)
     lowest = floor + (0.5 + _CLEAR) * d * math.hypot(1.0, tilt)

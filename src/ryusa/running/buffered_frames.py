@@ -31,15 +31,9 @@ def buffered_frames(recorder: CheckpointBlock, scene: Scene, folder: Path) -> di
             for name, (dtype, tail) in schema.FRAME_DATASETS.items()
         }
         shapes |= {"tally": ((k,), schema.TALLY), "contacts": ((len(rows["contacts"]),), EVENT)}
-        if scene.column is not None and k:
-            n_cell = scene.column.n
-            cells, faces = (schema.WATER_CELLS, (n_cell,)), (schema.WATER_FACES, (n_cell + 1,))
-            for names, tail in (cells, faces, (schema.WATER_NUMBERS, ())):
-                shapes |= {f"{schema.WATER}/{name}": ((k, *tail), _FLOAT) for name in names}
-        in_row = {} if scene.row is None or not k else scene.row.frame_shapes()
-        for name in schema.LATER_IN_ROW & in_row.keys():
-            rows.setdefault(f"{schema.ROW}/{name}", np.full((k, *in_row[name]), np.nan))
-        shapes |= {f"{schema.ROW}/{name}": ((k, *tail), _FLOAT) for name, tail in in_row.items()}
+        if scene.flow is not None and k:
+            of_water = scene.flow.frame_shapes()
+            shapes |= {f"{scene.flow.GROUP}/{name}": ((k, *tail), _FLOAT) for name, tail in of_water.items()}
         if scene.forces:
             n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0
             shapes |= {schema.N_FORCE: ((k,), np.dtype(np.int64)), schema.FORCES: ((n_force,), schema.FORCE)}

@@ -70,9 +70,7 @@ def state_of(results: Results) -> str:
 
 def _case(results: Results) -> str:
     scene, origin = results.scene, results.provenance
-    water = "" if scene.column is None else f", a column of {scene.column.n} cells of water"
-    if (row := scene.row) is not None:
-        water = f", a row of {row.n_segment} columns of {row.column.n} cells of water"
+    water = "" if scene.flow is None else f", {scene.flow.text}"
     overrides = origin.get("overrides")
     lines = "".join(f", {_words(k)} = {_words(v)}" for k, v in _table(overrides).items())
     return (

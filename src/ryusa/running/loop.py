@@ -35,8 +35,8 @@ from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
-from ryusa.running.water import RunWater, advanced, changed, finish_before, snapshot, started
-from ryusa.water.row_coupling import RowCoupling
+from ryusa.running.water import advanced, changed, finish_before, snapshot, started
+from ryusa.water.protocol import Fluid
 
 Done = TypeVar("Done")
 _NEVER = 2**62  # steps
@@ -72,7 +72,7 @@ class Loop:
     _at_rest: bool = False  # for as long as the stop rule requires
     _saltations_done: bool = False  # every tracked grain has made the required number
     _gathered: list[NDArray[np.void]] = field(default_factory=list[NDArray[np.void]])
-    _water: RunWater | None = None
+    _water: Fluid | None = None
     _pace: Pace = field(default_factory=Pace)
     _begun: float = field(default_factory=time.monotonic)
     _loaded: bool = False  # the engine has a state
@@ -308,7 +308,7 @@ class Loop:
                 self._water = passed.water
                 self.engine.set_fluid(passed.water.sampled)
             self.recorder.passages(passed.rows)
-        if isinstance(self._water, RowCoupling):
+        if self._water is not None:
             x = of_heads(self.scene, self.engine.grains())[0][self.scene.heads]
             self._water.refuse_lost(x, np.flatnonzero(self.scene.heads), self._step, self._t)
         for line in traffic.news(self._step, self._t):
@@ -384,7 +384,7 @@ class Loop:
             share = max(share, hops / self.stop.saltations)
         share, rate = min(max(share, self.precision.share(self._t)), 1.0), self._pace.rate
         known = str(self.precision) if self.precision.asked else ""
-        water = self._water.text if isinstance(self._water, RowCoupling) and not self.scene.n_grain else ""
+        water = "" if self._water is None or self.scene.n_grain else self._water.text
         return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops, known, water)
 
     def _summary(self) -> dict[str, Any]:

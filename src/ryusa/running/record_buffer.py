@@ -12,8 +12,7 @@ from ryusa.model.contacts import joined
 from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.running.contact_forces import contact_forces
-from ryusa.running.water import RunWater
-from ryusa.water.row_coupling import RowCoupling
+from ryusa.water.protocol import Fluid
 
 _FIRST_ROOM = 16  # frames
 _MANY_CONTACTS = (
@@ -44,7 +43,6 @@ class RecordBuffer:
         self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
         self._passages: list[NDArray[np.void]] | None = None if scene.traffic is None else []
         self._water: dict[str, list[NDArray[np.float64]]] = {}
-        self._row: dict[str, list[NDArray[np.float64]]] = {}
         self._bodies: dict[str, list[NDArray[Any]]] = {}  # motion of clumps at each frame
         self._walls: list[NDArray[np.float64]] = []  # impulses on them up to each frame
         self._travel: list[NDArray[np.float64]] = []  # of those that servos press, up to each frame
@@ -57,7 +55,7 @@ class RecordBuffer:
         """Size of the content [B]."""
         forces = sum(one.nbytes for one in self._forces or ())
         frames = self.n_frame * bytes_per_frame(self._scene.n_grain)
-        for held in (self._bodies, self._row):
+        for held in (self._bodies, self._water):
             frames += sum(one.nbytes for rows in held.values() for one in rows)
         passages = sum(one.nbytes for one in self._passages or ())
         return frames + forces + passages + self.n_contact * EVENT.itemsize
@@ -66,18 +64,14 @@ class RecordBuffer:
         self,
         state: State,
         tally: Tally,
-        water: RunWater | None,
+        water: Fluid | None,
         travel: NDArray[np.float64] | None,
         placed: Scene | None,
     ) -> None:
         """Add a frame, as copies of its arrays; parameters as for `Recorder.frame`."""
-        if isinstance(water, RowCoupling):
-            for name, one in _of_row(water).items():
-                self._row.setdefault(name, []).append(one)
-        elif water is not None:
-            profiles = {**vars(water.state), "phi": water.phi}
-            for name in (*schema.WATER_CELLS, *schema.WATER_FACES, *schema.WATER_NUMBERS):
-                self._water.setdefault(name, []).append(np.array(profiles[name]))
+        if water is not None:
+            for name, one in water.frame().items():
+                self._water.setdefault(name, []).append(one)
         self._make_room(1)
         row, k = self._frames, self.n_frame
         row["t"][k], row["step"][k] = state.t, state.step
@@ -129,8 +123,9 @@ class RecordBuffer:
             for name, (dtype, tail) in schema.BODY_DATASETS.items():
                 shape = (self.n_frame, self._scene.bodies.n, *tail)
                 rows[name] = np.array(self._bodies.get(name, ()), dtype).reshape(shape)
-        rows |= {f"{schema.ROW}/{name}": np.array(one) for name, one in self._row.items()}
-        return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
+        if (flow := self._scene.flow) is not None:
+            rows |= {f"{flow.GROUP}/{name}": np.array(one) for name, one in self._water.items()}
+        return rows
 
     def write(self, file: h5py.File) -> None:
         """Write the datasets of a part; many contacts as they were delivered, without a copy."""
@@ -162,11 +157,9 @@ class RecordBuffer:
         for name in schema.BODY_DATASETS:
             if name in rows:
                 self._bodies.setdefault(name, []).extend(rows[name])
-        for group, held in ((schema.WATER, self._water), (schema.ROW, self._row)):
-            begin = f"{group}/"
-            for name, profiles in rows.items():
-                if name.startswith(begin):
-                    held.setdefault(name.removeprefix(begin), []).extend(profiles)
+        if (flow := self._scene.flow) is not None:
+            for name in flow.frame_shapes():
+                self._water.setdefault(name, []).extend(rows.get(f"{flow.GROUP}/{name}", ()))
 
     def _room(self, k: int) -> dict[str, NDArray[Any]]:
         n = self._scene.n_grain
@@ -183,24 +176,3 @@ class RecordBuffer:
         for name, rows in self._frames.items():
             wider[name][: self.n_frame] = rows[: self.n_frame]
         self._frames = wider
-
-
-def _of_row(water: RowCoupling) -> dict[str, NDArray[np.float64]]:
-    """A frame of a row of columns, by dataset."""
-    row, state = water.row, water.state
-    inner = row.inner
-    lowest = row.solid_cells()
-    stations = row.stations_between
-    sill = np.maximum(lowest[stations[0]], lowest[stations[1]])
-    return {
-        "surface": state.surface[inner] - row.column.z_low + row.bottom,
-        "volume": state.volume[inner].copy(),
-        "content": state.content[inner].copy(),
-        "phi": np.array(water.phi),
-        "u": state.u.copy(),
-        "w": state.profiles[:, 1].copy(),
-        "discharge": water.passing.copy(),
-        "passed": state.passed.copy(),
-        "tau": state.edges[np.arange(len(sill)), 0, sill],
-        "energy": state.energy.copy(),
-    }

@@ -27,7 +27,7 @@ from ryusa.running.disk import disk_errors, free_bytes, hdf5_file, write_atomica
 from ryusa.running.folder import write_json
 from ryusa.running.record_buffer import RecordBuffer
 from ryusa.running.vtkhdf import PartSize, write_bed, write_hdf5, write_index, write_points
-from ryusa.running.water import RunWater
+from ryusa.water.protocol import Fluid
 
 _FLUSH_SOON = 2.0  # s between parts at the start of a run
 _FLUSH_LATE = 60.0  # upper limit, while there are few parts
@@ -132,7 +132,7 @@ class Recorder:
         self,
         state: State,
         tally: Tally,
-        water: RunWater | None = None,
+        water: Fluid | None = None,
         travel: NDArray[np.float64] | None = None,
         placed: Scene | None = None,
     ) -> None:

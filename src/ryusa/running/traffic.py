@@ -26,8 +26,7 @@ from ryusa.running.insertion import (
     spheres_at,
     wrapped,
 )
-from ryusa.water.coupling import Coupling
-from ryusa.water.row_coupling import RowCoupling
+from ryusa.water.protocol import Fluid
 
 _FULL = 3  # grains in a row that find no place, after which a feed is tried again at the next instant
 Ints = NDArray[np.int64]
@@ -42,13 +41,13 @@ class Passed(NamedTuple):
     state : of all grains after it, for the engine.
     events : contacts that ended with a grain that left, dtype EVENT.
     rows : grains that entered and left, dtype PASSAGE.
-    water : column or row among the grains that are there now; None without one, and before the first step.
+    water : what moves among the grains that are there now; None without one, and before the first step.
     """
 
     state: State
     events: np.ndarray
     rows: np.ndarray
-    water: Coupling | RowCoupling | None = None
+    water: Fluid | None = None
 
 
 @dataclass
@@ -110,7 +109,7 @@ class TrafficRule:
 
     def at_instant(
         self, scene: Scene, engine: Engine, step: int, t: float,
-        water: Coupling | RowCoupling | None = None,
+        water: Fluid | None = None,
     ) -> Passed | None:  # fmt: skip
         """Let grains leave and enter; None where none does.
 
@@ -118,7 +117,7 @@ class TrafficRule:
         ----------
         scene : that holds now.
         engine : has stepped to `step`, time t [s]; it is only read.
-        water : column or row; where a grain enters or leaves it is given what all took of it up to this step.
+        water : where a grain enters or leaves it is given what all took of it up to this step.
         """
         surface = surface_of(scene, water)
         status = self.population.status
@@ -165,15 +164,15 @@ class TrafficRule:
             population.due[i] = math.inf if to == NONE else row["t"]
 
     def _find_places(
-        self, scene: Scene, state: State, surface: Surface, water: Coupling | RowCoupling | None = None
+        self, scene: Scene, state: State, surface: Surface, water: Fluid | None = None
     ) -> tuple[np.ndarray, Entering, Floats]:
         """Find places for grains that are due, the longest waiting first, as far as there is room.
 
         Parameters
         ----------
         state : without those that have just left.
-        surface : height of the water of a column or a row.
-        water : column or row; grains of a feeder reach wait for the first step of a row.
+        surface : height of the water.
+        water : grains of a feeder reach wait for its first step.
 
         Returns
         -------
@@ -193,11 +192,11 @@ class TrafficRule:
         for i in due.tolist():
             k = int(population.feed[i])
             own = listed(self.traffic.arrivals, k)  # then one without room says nothing of the next
-            if (failed[k] >= _FULL and not own) or (own and not isinstance(water, RowCoupling)):
+            if (failed[k] >= _FULL and not own) or (own and water is None):
                 continue
             if k not in near:
                 near[k] = self._neighbours(scene, k, inside, t)
-            if own and isinstance(water, RowCoupling):
+            if own and water is not None:
                 due_at = float(population.due[i])
                 (row, place), q = arriving(scene, water, near[k], i, step, t, due_at), _UPRIGHT
             else:
@@ -346,21 +345,16 @@ class TrafficRule:
         self.said = found["said"].astype(np.bool_)
 
 
-def surface_of(scene: Scene, water: Coupling | RowCoupling | None) -> Surface:
+def surface_of(scene: Scene, water: Fluid | None) -> Surface:
     """Height of the surface along x, before the first step that of the start; -inf without water."""
-    if isinstance(water, RowCoupling):
-        return water.surface_at
-    row = scene.row
-    if water is None and row is not None and row.start is not None:
-        start = row.start
-        return lambda x: start[np.clip((x - row.x_low) // row.dx, 0, row.n_segment - 1).astype(np.int64)]
-    level = -math.inf if scene.column is None else scene.column.z_surface
     if water is not None:
-        level = water.state.z_surface
-    return lambda x: np.full(len(x), level)
+        return water.surface_at
+    if scene.flow is not None:
+        return scene.flow.first_surface
+    return lambda x: np.full(len(x), -math.inf)
 
 
-def _at_entry(state: State, water: Coupling | RowCoupling, ids: Ints) -> State:
+def _at_entry(state: State, water: Fluid, ids: Ints) -> State:
     """A snapshot in water, with the water at spheres of some ids that are about to be put into it."""
     assert state.fluid is not None
     sampled = state.fluid.sampled.copy()

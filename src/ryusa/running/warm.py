@@ -68,7 +68,7 @@ def warm(case: "Case | str | os.PathLike[str]", *, threads: int = 1) -> Done:
 
 def _stretch(scene: Scene) -> int:
     """Steps in which every kernel of a scene is asked for."""
-    exchange = max([one.interval for one in (scene.column, scene.row and scene.row.column) if one] or [0])
+    exchange = 0 if scene.flow is None else scene.flow.interval
     return max(2 * _STEPS, exchange + 1, _ENOUGH // max(scene.n_grain, 1))
 
 

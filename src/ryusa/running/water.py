@@ -1,4 +1,4 @@
-"""The column or row of columns of a run: its start, and the steps of an engine between exchanges with it.
+"""The water of a run: its start, and the steps of an engine between exchanges with it.
 
 An engine of several processes has a column in each of them; that of the process that leads is the one here.
 """
@@ -10,16 +10,14 @@ import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
 from ryusa.model import CouplingState, RowCouplingState, Scene, State
-from ryusa.model.row import EndKind
-from ryusa.model.scene import Floats
+from ryusa.model.arrays import Floats
 from ryusa.water.coupling import Coupling
 from ryusa.water.processes import SharingProcesses
+from ryusa.water.protocol import Fluid
 from ryusa.water.row_coupling import RowCoupling
 
-RunWater = Coupling | RowCoupling
 
-
-def started(scene: Scene, engine: Engine, state: State, step: int, threads: int = 1) -> RunWater | None:
+def started(scene: Scene, engine: Engine, state: State, step: int, threads: int = 1) -> Fluid | None:
     """The water of a scene at its first step, or as a state holds it; None where there is none.
 
     Parameters
@@ -28,43 +26,54 @@ def started(scene: Scene, engine: Engine, state: State, step: int, threads: int 
     step : of the engine.
     threads : share the exchange between grains and a row of columns; the bits do not depend on them.
     """
-    column = scene.column
-    if scene.row is not None:
-        found = state.coupling
-        if isinstance(found, RowCouplingState):
-            told = None if state.fluid is None else state.fluid.sampled
-            return RowCoupling.resume(scene, scene.row, found, told, threads)
-        row = RowCoupling.begin(scene, scene.row, engine.kinematics()[0], step, threads)
-        engine.set_fluid(row.sampled)
-        return row
-    if column is None:
-        return None
-    found = state.coupling if state.fluid is not None else None
-    assert not isinstance(found, RowCouplingState)
-    if isinstance(engine, SharesColumn):
+    found, told = state.coupling, None if state.fluid is None else state.fluid.sampled
+    if isinstance(engine, SharesColumn) and scene.column is not None:
+        assert not isinstance(found, RowCouplingState)
         return engine.couple(partial(_in_process, step, found), told=found is not None)
-    if found is not None and state.fluid is not None:
-        return Coupling.resume(scene, column, column.interval, found, state.fluid.sampled)
-    x, _, _ = engine.kinematics()
-    water = Coupling.begin(scene, column, column.interval, x, step=step)
-    engine.set_fluid(water.sampled)
+    if found is not None:
+        return _resumed(scene, found, told, threads)
+    water = _begun(scene, engine.kinematics()[0], step, threads)
+    if water is not None:
+        engine.set_fluid(water.sampled)
     return water
+
+
+def _begun(scene: Scene, x: Floats, step: int, threads: int, **of_process: Any) -> Fluid | None:
+    """The water of a scene at its first step, among grains at x [m]."""
+    if scene.row is not None:
+        return RowCoupling.begin(scene, scene.row, x, step, threads)
+    if (column := scene.column) is not None:
+        return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
+    return None
+
+
+def _resumed(
+    scene: Scene,
+    found: CouplingState | RowCouplingState,
+    told: Floats | None,
+    threads: int,
+    **of_process: Any,
+) -> Fluid:
+    """The water of a snapshot, with what the grains were told of it."""
+    if isinstance(found, RowCouplingState):
+        assert scene.row is not None
+        return RowCoupling.resume(scene, scene.row, found, told, threads)
+    assert scene.column is not None and told is not None
+    return Coupling.resume(scene, scene.column, scene.column.interval, found, told, **of_process)
 
 
 def _in_process(
     step: int, found: CouplingState | None, scene: Scene, ids: np.ndarray, x: Floats, sampled: Floats,
     processes: SharingProcesses | None,
-) -> Coupling:  # fmt: skip
+) -> Fluid | None:  # fmt: skip
     """The column for the grains of one of several processes."""
-    column = scene.column
-    assert column is not None
     of_process: dict[str, Any] = {"ids": ids, "processes": processes}
     if found is not None:
-        return Coupling.resume(scene, column, column.interval, found, sampled, **of_process)
-    return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
+        return _resumed(scene, found, sampled, 1, **of_process)
+    return _begun(scene, x, step, 1, **of_process)
 
 
-def advanced(engine: Engine, water: RunWater | None, step: int, n_steps: int) -> tuple[int, Flags]:
+def advanced(engine: Engine, water: Fluid | None, step: int, n_steps: int) -> tuple[int, Flags]:
     """Step the engine, with an exchange between water and grains at each coupling interval.
 
     Returns
@@ -87,32 +96,21 @@ def advanced(engine: Engine, water: RunWater | None, step: int, n_steps: int) ->
     return step, Flags()
 
 
-def finish_before(engine: Engine, water: RunWater, step: int, after: Scene) -> None:
-    """End the interval of a row before its discharge or level changes, so that each acts in its own time."""
-    before = water.scene.row
-    if not isinstance(water, RowCoupling) or before is None or after.row is None:
-        return
-    ends, below = (before.upstream, after.row.upstream), (before.downstream, after.row.downstream)
-    if (ends[0] and ends[1] and ends[0].discharge != ends[1].discharge) or (
-        below[0] and below[1] and below[0].kind is EndKind.LEVEL and below[0].level != below[1].level
-    ):
+def finish_before(engine: Engine, water: Fluid, step: int, after: Scene) -> None:
+    """End an interval before the timeline makes the scene another one, where the water needs that."""
+    if water.ends_with(after):
         water.finish(step, *engine.kinematics())
         engine.set_fluid(water.sampled)
 
 
-def changed(engine: Engine, water: RunWater, scene: Scene) -> None:
+def changed(engine: Engine, water: Fluid, scene: Scene) -> None:
     """Let the water take over a scene that the timeline changed and the engine has loaded."""
-    if isinstance(water, RowCoupling):
-        assert scene.row is not None
-        water.change(scene, scene.row)
-    elif isinstance(engine, SharesColumn):
+    if isinstance(engine, SharesColumn):
         engine.change_column()
-    elif scene.column is not None:
-        water.change(scene, scene.column)
+    else:
+        water.change(scene)
 
 
-def snapshot(engine: Engine, water: RunWater) -> CouplingState | RowCouplingState:
+def snapshot(engine: Engine, water: Fluid) -> CouplingState | RowCouplingState:
     """State of the water, for an exact resume."""
-    if isinstance(water, RowCoupling):
-        return water.snapshot()
     return water.snapshot(engine.kept() if isinstance(engine, SharesColumn) else None)

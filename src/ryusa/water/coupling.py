@@ -5,6 +5,7 @@ received is taken from the cells with the same slices, so that momentum is conse
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from zlib import crc32
 
@@ -189,13 +190,19 @@ class Coupling:
         """Momentum budget of the water over the last interval; None before the first, and after a resume."""
         return budget_of(self._out) if len(self._out) == step.N_SCALAR else None
 
-    def change(self, scene: Scene, column: Column) -> None:
+    def ends_with(self, after: Scene) -> bool:
+        """No change has to wait for the end of an interval."""
+        del after
+        return False
+
+    def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
-        before, self.scene, self.column = self.scene, scene, column
+        assert scene.column is not None
+        before, self.scene, self.column = self.scene, scene, scene.column
         self._cut(self._arrays.z)
         if not np.array_equal(scene.fixed_active, before.fixed_active):
             # the same bits as after a resume
-            free = _of_free_grains(self._arrays, column, self.processes)
+            free = _of_free_grains(self._arrays, scene.column, self.processes)
             self.phi = free + self._arrays.bed.phi
 
     def _cut(self, z: Floats) -> None:
@@ -293,6 +300,29 @@ class Coupling:
         other._arrays.force_z[:] = self._arrays.force_z
         other.sampled = other._water_at_grains()
         return other
+
+    def frame(self) -> Mapping[str, Floats]:
+        """Profiles and numbers of a frame, as `Column.frame_shapes`."""
+        found = {**vars(self.state), "phi": self.phi}
+        return {name: np.array(found[name]) for name in self.column.frame_shapes()}
+
+    def surface_at(self, x: Floats) -> Floats:
+        """Height of the surface, the same everywhere [m], same shape."""
+        return np.full(x.shape, float(self._out[SURFACE]))
+
+    def refuse_lost(self, x: Floats, grains: Ints, step: int, t: float) -> None:
+        """A column has no ends."""
+
+    @property
+    def bed_at_inlet(self) -> float:
+        """Nothing enters a column [m]."""
+        return 0.0
+
+    @property
+    def text(self) -> str:
+        """Discharge and speed in a line."""
+        found = self.numbers()
+        return f"discharge {found['discharge']:.4g} m2/s  fastest {found['speed_max']:.3g} m/s"
 
     def numbers(self) -> dict[str, float | int]:
         """State of the water for the summary of a run; SI."""

@@ -1,6 +1,7 @@
 """The row of columns of a run: its water, alone or among grains (design/0027)."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from ryusa.errors import GrainLost
 from ryusa.laws.families import BedKind, Mixing, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
+from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
@@ -102,16 +104,28 @@ class RowCoupling:
         about = found.steps, sampled, found.due, found.exchanges, found.worst, found.water, found.passing
         return RowCoupling(scene, row, *about, grains)
 
-    def snapshot(self) -> RowCouplingState:
-        """All that `resume` needs."""
+    def snapshot(self, kept: Floats | None = None) -> RowCouplingState:
+        """All that `resume` needs; a row is in one process, so that nothing is `kept` elsewhere."""
+        del kept
         grains = None if self.grains is None else self.grains.snapshot()
         about = self.state, self.steps, self.due, self.exchanges, self.worst, self.passing
         return RowCouplingState(*about, grains)
 
-    def change(self, scene: Scene, row: ColumnRow) -> None:
-        """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
-        self.scene, self.row = scene, with_inlet(row)
-        self._courses = EndsOverTime.of(row)
+    def ends_with(self, after: Scene) -> bool:
+        """Whether a discharge or a level changes, so that each has to act in its own time."""
+        before, row = self.scene.row, after.row
+        if before is None or row is None:
+            return False
+        above, below = (before.upstream, row.upstream), (before.downstream, row.downstream)
+        return bool(above[0] and above[1] and above[0].discharge != above[1].discharge) or bool(
+            below[0] and below[1] and below[0].kind is EndKind.LEVEL and below[0].level != below[1].level
+        )
+
+    def change(self, scene: Scene) -> None:
+        """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
+        assert scene.row is not None
+        self.scene, self.row = scene, with_inlet(scene.row)
+        self._courses = EndsOverTime.of(scene.row)
         if self.grains is None:
             self._arrays = RowArrays.of(self.row)
         else:
@@ -172,8 +186,25 @@ class RowCoupling:
     def surface_at(self, x: Floats) -> Floats:
         """Height of the surface over z = 0 at places along the row [m], same shape."""
         row = self.row
-        at = np.clip(np.floor((x - row.x_low) / row.dx), 0, row.n_segment - 1).astype(np.int64)
-        return (row.bottom + self.state.surface[row.inner] - row.column.z_low)[at]
+        return (row.bottom + self.state.surface[row.inner] - row.column.z_low)[row.segment_at(x)]
+
+    def frame(self) -> Mapping[str, Floats]:
+        """Segments and stations of a frame, as `ColumnRow.frame_shapes`."""
+        row, state, lowest = self.row, self.state, self.row.solid_cells()
+        stations = row.stations_between
+        sill = np.maximum(lowest[stations[0]], lowest[stations[1]])
+        return {
+            "surface": state.surface[row.inner] - row.column.z_low + row.bottom,
+            "volume": state.volume[row.inner].copy(),
+            "content": state.content[row.inner].copy(),
+            "phi": np.array(self.phi),
+            "u": state.u.copy(),
+            "w": state.profiles[:, 1].copy(),
+            "discharge": self.passing.copy(),
+            "passed": state.passed.copy(),
+            "tau": state.edges[np.arange(len(sill)), 0, sill],
+            "energy": state.energy.copy(),
+        }
 
     @property
     def bed_at_inlet(self) -> float:

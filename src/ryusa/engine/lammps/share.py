@@ -226,7 +226,7 @@ class GrainShare:
         """Let the column take over the scene that `change` took."""
         assert self._scene is not None
         self._hold()
-        self.water.change(self._scene, self._scene.column)
+        self.water.change(self._scene)
 
     def kept(self) -> tuple[np.ndarray, Floats]:
         """Ids of the grains of this rank, and what they keep for the column (model.fluid)."""

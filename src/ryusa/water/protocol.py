@@ -1,0 +1,115 @@
+"""What the rest of ryusa knows of water that moves: one protocol, whatever its kind."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import CouplingState, RowCouplingState, Scene
+from ryusa.model.arrays import Floats
+
+
+class Fluid(Protocol):
+    """Water of a run that exchanges momentum with its grains once per interval of steps.
+
+    `running.water.started` makes its first state, and one that goes on from a snapshot. What it is made of
+    (cells, bottom, ends) is the `flow` of the scene.
+
+    Attributes
+    ----------
+    due : step of the engine at which the next exchange is due.
+    sampled : water at the grains as given last, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
+    """
+
+    due: int
+    sampled: Floats
+
+    def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
+        """Give the water what the grains took in the interval, move it on, and tell the grains anew.
+
+        Parameters
+        ----------
+        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); nan for one that is
+            away.
+        impulse : what each took from the water in the interval, columns of `model.fluid`.
+
+        Returns
+        -------
+        sampled : as the attribute.
+
+        Raises
+        ------
+        WaterError : the water cannot be moved on, or drag acts faster than a step resolves.
+        RunError : a grain is at no place that the water can be cut at.
+        """
+        ...
+
+    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
+        """End the interval at this step, before the next exchange is due; else as `exchange`."""
+        ...
+
+    def among(self, x: Floats, step: int) -> Self:
+        """The same water at a step at which grains have entered or left, just after an exchange.
+
+        Parameters
+        ----------
+        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
+        step : of the engine; the next exchange is due one later, as the drag on those that entered is not
+            known yet.
+        """
+        ...
+
+    def ends_with(self, after: Scene) -> bool:
+        """Whether its interval has to end before the timeline makes the scene this one."""
+        ...
+
+    def change(self, scene: Scene) -> None:
+        """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
+        ...
+
+    def snapshot(self, kept: Floats | None = None) -> CouplingState | RowCouplingState:
+        """All that an exact resume needs, beside the water at the grains.
+
+        Parameters
+        ----------
+        kept : what goes with the grains, of all processes that share them, columns of `model.fluid` by id.
+        """
+        ...
+
+    def frame(self) -> Mapping[str, NDArray[Any]]:
+        """What a run folder keeps of it at a frame: the datasets of `scene.flow.frame_shapes()`."""
+        ...
+
+    def surface_at(self, x: Floats) -> Floats:
+        """Height of the surface over z = 0 at places along x [m], same shape."""
+        ...
+
+    def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
+        """Raise a `GrainLost` for a grain where there is no water to be in.
+
+        Parameters
+        ----------
+        x : centres of spheres and clumps [m], nan where one is away, shape (n, 3).
+        grains : their ids, shape (n,).
+        step, t : of the engine now, its time [s].
+        """
+        ...
+
+    @property
+    def bed_at_inlet(self) -> float:
+        """Thickness of the bed where water and grains enter [m]; 0 where none do."""
+        ...
+
+    @property
+    def text(self) -> str:
+        """State in a line, for the progress of a run without grains."""
+        ...
+
+    def numbers(self) -> dict[str, float | int]:
+        """State for the summary of a run; SI."""
+        ...
+
+    def warnings(self) -> list[str]:
+        """Warnings, one sentence each."""
+        ...
