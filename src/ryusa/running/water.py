@@ -26,6 +26,8 @@ def started(scene: Scene, engine: Engine, state: State, step: int, threads: int 
     step : of the engine.
     threads : share the exchange between grains and a row of columns; the bits do not depend on them.
     """
+    if scene.flow is None:
+        return None
     found, told = state.coupling, None if state.fluid is None else state.fluid.sampled
     if isinstance(engine, SharesColumn) and scene.column is not None:
         assert not isinstance(found, RowCouplingState)
@@ -33,18 +35,17 @@ def started(scene: Scene, engine: Engine, state: State, step: int, threads: int 
     if found is not None:
         return _resumed(scene, found, told, threads)
     water = _begun(scene, engine.kinematics()[0], step, threads)
-    if water is not None:
-        engine.set_fluid(water.sampled)
+    engine.set_fluid(water.sampled)
     return water
 
 
-def _begun(scene: Scene, x: Floats, step: int, threads: int, **of_process: Any) -> Fluid | None:
+def _begun(scene: Scene, x: Floats, step: int, threads: int, **of_process: Any) -> Fluid:
     """The water of a scene at its first step, among grains at x [m]."""
     if scene.row is not None:
         return RowCoupling.begin(scene, scene.row, x, step, threads)
-    if (column := scene.column) is not None:
-        return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
-    return None
+    column = scene.column
+    assert column is not None
+    return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
 
 
 def _resumed(
@@ -65,7 +66,7 @@ def _resumed(
 def _in_process(
     step: int, found: CouplingState | None, scene: Scene, ids: np.ndarray, x: Floats, sampled: Floats,
     processes: SharingProcesses | None,
-) -> Fluid | None:  # fmt: skip
+) -> Fluid:  # fmt: skip
     """The column for the grains of one of several processes."""
     of_process: dict[str, Any] = {"ids": ids, "processes": processes}
     if found is not None:
