@@ -115,7 +115,7 @@ def make_record_of_lane(plane: bool, exact: bool) -> Any:
                 record[R.T_END] = t_end
         elif was and record[R.PARTNER] >= 0.0:
             end_record(
-                plane, tension, record, f_last, t, overlap, closing, slip, normal, i, grains.v,
+                plane, tension, record, f_last, t, dt, overlap, closing, slip, normal, i, grains.v,
                 grains.w, ended, stats,
             )  # fmt: skip
 

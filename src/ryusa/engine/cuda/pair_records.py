@@ -77,7 +77,7 @@ def make_record(variant: KernelVariant, choice: LawChoice) -> Any:
                 record_stats = cuda.local.array(n_stat, float64)
                 record_stats[S.N_ENDED] = record_stats[S.FAULT] = 0.0
                 _end_record(
-                    plane_case, pulls, record, f_last, t, overlap, closing, slip, normal, i, grains.v,
+                    plane_case, pulls, record, f_last, t, dt, overlap, closing, slip, normal, i, grains.v,
                     grains.w, ended[slot : slot + 1], record_stats,
                 )  # fmt: skip
             else:

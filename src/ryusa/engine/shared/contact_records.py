@@ -132,6 +132,7 @@ def end_record(
     record: Any,
     f_n: float,
     t: float,
+    dt: float,
     overlap: float,
     closing: float,
     slip: Vector,
@@ -142,8 +143,13 @@ def end_record(
     ended: Any,
     stats: Any,
 ) -> None:
-    """Close a record in the first step without overlap and put it with the ended ones of the block."""
-    record[R.T_PART] = t + overlap / abs(closing) if closing < 0.0 else t
+    """Close a record in the first step without overlap and put it with the ended ones of the block.
+
+    The moment of parting is interpolated: within the step, as others may have slowed the pair down since, and
+    not before the touch, which may lie in the same step.
+    """
+    back = min(-overlap / abs(closing), dt) if closing < 0.0 else 0.0
+    record[R.T_PART] = max(t - back, record[R.T_BEGIN])
     if tension or f_n > 0.0:
         record[R.T_END] = record[R.T_PART]
     record[R.CLOSING_END] = closing
