@@ -173,6 +173,14 @@ def test_a_front_that_moves_at_one_speed_has_that_speed_and_bed_grains_do_not_co
     assert len(drawn_front(found).axes) == 1
 
 
+def test_the_speed_of_a_front_leaves_out_the_time_in_which_it_lies() -> None:
+    """Grains move at 0.2 m/s for half of the time."""
+    x = np.zeros((11, 100, 3))
+    x[:, :, 0] = np.linspace(0.0, 0.099, 100) + 0.2 * np.minimum(T, 0.5)[:, None]
+    found = front(run_of(row_of(ends=True), T, x, np.zeros_like(x)))
+    assert found["front_speed"].value == pytest.approx(0.2)
+
+
 def test_a_front_stays_where_its_grains_left(trap: Any) -> None:
     found = front(trap)
     assert found.first[1] == pytest.approx(0.135) and found.first[5:] == pytest.approx(0.18)
@@ -189,3 +197,21 @@ def test_a_period_has_no_front(trap: Any) -> None:
     object.__setattr__(trap.scene, "period", (0.1, math.inf))
     with pytest.raises(ResultsError, match="periodic along x"):
         front(trap)
+
+
+def test_grains_that_lie_in_the_reach_from_the_start_are_no_trapped_share() -> None:
+    """Ten grains upstream of the dam, of which one goes over it in every frame; none comes in."""
+    x = np.full((11, 12, 3), np.nan)
+    x[:, :10] = (0.12, 0.0, 0.001)
+    for k in range(10):
+        x[k + 1 :, k, 0] = 0.17
+    found = deposit(run_of(dammed(), T, x, np.zeros_like(x)))
+    assert found.stored[-1] == pytest.approx(-10 * BALL / WIDTH)
+    assert np.isnan(found.trapped).all() and found["trapped_share"].n == 0
+    assert "trapped share: none" in found.averages.notes[-1]
+
+
+def test_a_trapped_share_is_counted_and_has_no_error_of_one_run(trap: Any) -> None:
+    found = deposit(trap)
+    assert math.isnan(found["trapped_share"].error) and found["trapped_share"].n_series == 0
+    assert "counted at the last frame" in found.averages.notes[-1]

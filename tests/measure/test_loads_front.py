@@ -89,3 +89,4 @@ def test_a_pond_that_fills_is_no_front() -> None:
     found = loads(run_of(STILL, 0.0, inlet, 12.0, 0.2, coarse=3))
     assert found.fronts == (None,)
     assert not any("front" in one.name or "formula" in one.name for one in found.averages.items)
+    assert any(one.startswith("no formulae for a front against") for one in found.averages.notes)

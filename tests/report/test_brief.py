@@ -1,3 +1,4 @@
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,11 +15,14 @@ from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.cli import app
 from ryusa.errors import CaseError, ResultsError
 from ryusa.measure import surface
+from ryusa.measure.pooled import mean_of_runs
+from ryusa.measure.statistics import Average
 from ryusa.report import brief
-from ryusa.report.answer import answer
+from ryusa.report.answer import _sentence, answer
 from ryusa.report.brief import brief_page, write_pdf
-from ryusa.report.covered import not_covered
-from ryusa.report.headlines import HEADLINES
+from ryusa.report.contents import ExplainedValue
+from ryusa.report.covered import _wall, not_covered
+from ryusa.report.headlines import HEADLINES, Headline
 from ryusa.report.question import question_of
 from ryusa.results import Results
 from ryusa.running.runner import run, run_scene
@@ -140,3 +144,39 @@ def test_the_command_writes_a_brief_and_its_options_belong_to_it(heaps, tmp_path
     monkeypatch.setattr(brief, "BROWSERS", ("no-such-browser",))
     with pytest.raises(ResultsError, match=r"apt install chromium.*print it from any browser"):
         write_pdf("", tmp_path / "b.pdf")
+
+
+def changing(value: float, drift: float, variation: float = 9.0) -> Average:
+    return Average("q_mass", "kg/s/m", value, 0.01, 500, 1, 100.0, (2.0, 5.0), variation, drift, math.nan)
+
+
+@pytest.mark.parametrize(
+    "column, sure",
+    [
+        ([changing(11.4, 0.068)], "mean from 2 to 5 s, second half higher by 0.068 kg/s/m"),
+        ([changing(11.4, 0.68)], "not steady from 2 to 5 s, second half higher by 0.68 kg/s/m"),
+        (
+            [changing(0.61, 0.0055), changing(0.62, -0.0448), changing(0.65, -0.0247, 1.0)],
+            "95 % interval 0.575 to 0.678 kg/s/m, second half lower by 0.0213 kg/s/m",
+        ),
+        (
+            [changing(0.61, -0.3), changing(0.62, -0.2), changing(0.65, -0.25)],
+            "not steady from 2 to 5 s, second half lower by 0.25 kg/s/m",
+        ),
+        ([changing(0.61, math.nan, math.inf)], "not steady from 2 to 5 s"),
+    ],
+)
+def test_a_change_that_is_small_beside_the_number_or_its_interval_is_said_and_changes_no_answer(column, sure):
+    """The change of a mean over seeds is the mean of theirs, not that of the one that varies most."""
+    said = _sentence(Headline("q_mass", "It is {}.", "kg/s/m"), column, alone=False)
+    assert said.sure == sure
+    if len(column) > 1:
+        assert mean_of_runs(column).drift == pytest.approx(np.mean([one.drift for one in column]))
+
+
+@pytest.mark.parametrize("shown, said", [("10 x 6 x 3 cm", "10 x 6 x 3 cm"), ("0 x 6 x 3 cm", "6 x 3 cm")])
+def test_the_size_of_a_wall_keeps_its_sides(shown, said):
+    assert (
+        _wall(ExplainedValue("", "weir: size in x, y, z", shown, "mesh; of a file", ""))
+        == f"weir, mesh {said}"
+    )

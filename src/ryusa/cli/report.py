@@ -1,10 +1,11 @@
 """`ryusa report`: one page about one run or several."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ryusa.cli.chosen import reach as reach_of
 from ryusa.cli.options import Browser, Quiet, in_unit, open_run, page_file, page_size, write_page
 from ryusa.errors import CaseError
 
@@ -57,6 +58,14 @@ def report(
             "alone the last fifth of the record.",
         ),
     ] = None,
+    reach: Annotated[
+        str | None,
+        typer.Option(
+            metavar="BEGIN to END",
+            help="--brief: reach of a row in which a deposit is measured, such as '0.9 m to 1.3 m'; default "
+            "from its upper end to its first dam.",
+        ),
+    ] = None,
     browser: Browser = False,
     quiet: Quiet = False,
 ) -> None:
@@ -72,9 +81,14 @@ def report(
     name = schema.BRIEF if brief else schema.REPORT
     path = output or (runs[0] / name if len(runs) == 1 else Path(name))
     if brief:
-        _brief(runs, path, like, None if begin is None else in_unit(begin, "s", "--begin"), browser)
+        chosen = {
+            "like": like,
+            "begin": None if begin is None else in_unit(begin, "s", "--begin"),
+            "reach": None if reach is None else reach_of("--reach", reach, open_run(runs[0])),
+        }
+        _brief(runs, path, chosen, browser)
         return
-    for option, given in (("--like", like), ("--begin", begin)):
+    for option, given in (("--like", like), ("--begin", begin), ("--reach", reach)):
         if given is not None:
             raise CaseError(option, given, "is an option of --brief")
     page_file(path)
@@ -85,13 +99,13 @@ def report(
     write_page(page, path, browser)
 
 
-def _brief(runs: list[Path], path: Path, like: str | None, begin: float | None, browser: bool) -> None:
+def _brief(runs: list[Path], path: Path, chosen: dict[str, Any], browser: bool) -> None:
     from ryusa.report.brief import brief_page, write_pdf
 
     pdf = path.suffix == ".pdf"
     if not pdf:
         page_file(path)
-    page = brief_page([open_run(one) for one in runs], like=like, begin=begin)
+    page = brief_page([open_run(one) for one in runs], **chosen)
     if not pdf:
         write_page(page, path, browser)
         return

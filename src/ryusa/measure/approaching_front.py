@@ -64,7 +64,7 @@ class ApproachingFront:
 
 def approaching_front(
     run: Run, dam: RowDam, frames: slice, force: Floats, largest: float
-) -> ApproachingFront | None:
+) -> ApproachingFront | str:
     """Find the front to which the largest force on a dam is due.
 
     Parameters
@@ -76,7 +76,7 @@ def approaching_front(
 
     Returns
     -------
-    The front; None where there was none, or where frames or segments are too few to see it.
+    The front; where there was none, or frames or segments are too few to see it, why in words.
 
     Notes
     -----
@@ -92,26 +92,28 @@ def approaching_front(
     tall = float(dam.crest - row.bottom[max(dam.first - 1, 0)])
     begin, end = (dam.first - round(far * tall / row.dx) for far in (FAR, NEAR))
     begin = min(begin, end - LEAST)
-    if begin < 0 or largest <= 0.0:
-        return None
+    if begin < 0:
+        return f"the reach before it, {FAR:g} of its heights long, begins above the row"
+    if largest <= 0.0:
+        return "nothing pushes it downstream"
     reach = slice(begin, end)
     struck = int(np.argmax(force >= HALF * largest))
     through = _discharge(run, frames)[:, end - 1]
     most = float(through[: struck + 1].max())
     came = int(np.argmax(through >= HALF * most))
     if most <= 0.0 or came >= struck or force[came] >= TENTH * largest:
-        return None
+        return "it bore more than a tenth of its largest load before half of the largest discharge had come"
     window = (float(t[came + 1]), float(t[struck]))
     if struck < came + 2:
-        return None
+        return "a front came and struck within two frames (`record.frames`)"
     flow = long_section(run, bed="rest", begin=window[0], end=window[1])
     grains, h = float(flow.solid_discharge[reach].mean()), float(flow.depth[reach].mean())
     both = grains + float(flow.discharge[reach].mean())
     if h <= 0.0 or both <= 0.0:
-        return None
+        return "nothing flows over what rests before it"
     u, c = both / h, grains / both
     if window[1] - window[0] > SLOW * (dam.first - begin) * row.dx / u:
-        return None
+        return "its load grew more slowly than a front that is thrown back, as in a pond that fills"
     rho_w, scene = row.column.rho_w, run.scene
     rho_s = float(scene.m.sum() / scene.solid_volume.sum()) if scene.n_grain else rho_w
     return ApproachingFront(

@@ -19,6 +19,9 @@ from ryusa.model.contact_law import damping_ratio_of, hertz_stiffness_of
 Partner = Literal["all", "bed", "free", "plane"]
 
 
+CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight changes the speed by 5 % or more
+
+
 @dataclass(frozen=True)
 class ContactTimes:
     """Closed forms of the contact time of one grain with one partner.
@@ -75,6 +78,21 @@ class Collisions(Averaged):
         return self.averages.rows()
 
 
+def _over(above: Floats, below: Floats) -> Floats:
+    """Quotients; nan where nothing is below."""
+    return np.divide(above, below, out=np.full(len(above), np.nan), where=below > 0.0)
+
+
+def speed_of_weight(scene: Scene) -> float:
+    """Speed that the heaviest grain gains by its weight within one contact [m/s]."""
+    if scene.n_grain == 0:
+        return 0.0
+    k = int(np.argmax(scene.m))
+    m = float(scene.m[k] + scene.m_added[k])  # that of a sphere of a clump, at most: contacts judged are more
+    g = float(np.linalg.norm(scene.gravity)) * abs(float(scene.m_weight[k])) / m
+    return g * collision_time(m, scene.contact.k_n)
+
+
 def contact_times(scene: Scene, grain: int = 0, partner: int | None = None) -> ContactTimes:
     """Closed forms for `grain` against a fixed partner (None) or another free grain."""
     law = scene.contact
@@ -125,10 +143,10 @@ def collisions(
     overlap = events["overlap_max"] / np.minimum(sizes[i], sizes[j])
     speed = events["closing_begin"]
     alone = whole & (events["alone"] > 0.0) & (speed > 0.0)
-    e = np.divide(-events["closing_end"], speed, out=np.full(len(events), np.nan), where=alone)
+    e = _over(-events["closing_end"], np.where(alone, speed, 0.0))
     slip = np.linalg.norm(events["slip_begin"], axis=1)
     along = -np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
-    e_s = np.divide(along, slip * slip, out=np.full(len(events), np.nan), where=alone & (slip > 0.0))
+    e_s = _over(along, np.where(alone, slip * slip, 0.0))
     radii = 0.5 * sizes
     reduced, expected = 1.0 / (1.0 / radii[i] + 1.0 / radii[j]), np.empty(len(events))
     for one, some in scene.by_pair(i, j):
@@ -149,11 +167,12 @@ def collisions(
             mean("closing_speed", "m/s", speed),
             mean("restitution_alone", "-", e),
             mean("restitution_shear_alone", "-", e_s),
-            mean("slide_share", "-", np.divide(events["t_slide"], events["t_part"] - events["t_begin"])),
+            mean("slide_share", "-", _over(events["t_slide"], events["t_part"] - events["t_begin"])),
         ),
         (
             f"{len(events)} contacts with partner '{partner}', {int(alone.sum())} of them alone",
             f"largest overlap/d {overlap.max():.4g}" if len(events) else "no contact in the window",
+            *_by_speed(e, speed, CLOSING_LEAST * speed_of_weight(scene)),
         ),
     )
     turning = _turning(events, scene, expected)
@@ -192,6 +211,19 @@ def _of_kind(j: NDArray[np.int64], scene: Scene, partner: Partner) -> NDArray[np
         "plane": j >= planes,
     }
     return kinds[partner]
+
+
+def _by_speed(e: Floats, speed: Floats, least: float) -> list[str]:
+    """How the restitution of contacts that close slowly differs from that of the others, in words."""
+    alone = np.isfinite(e)
+    fast = alone & (speed > least)
+    if not fast.any() or fast.sum() == alone.sum():
+        return []
+    return [
+        f"restitution_alone is {np.mean(e[fast]):.3g} of the {fast.sum()} that closed faster than "
+        f"{least:.2g} m/s, which the summary of a run states; the weight of a grain changes that of the "
+        "others"
+    ]
 
 
 def _damped(scene: Scene, mass: float) -> float:

@@ -11,13 +11,14 @@ from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.along_row import volumes_of_heads
 from ryusa.measure.long_section import Bed, bed_line, row_of
 from ryusa.measure.snapshot import scene_at
-from ryusa.measure.statistics import average, ratio, standard_error
+from ryusa.measure.statistics import Average, average, ratio, standard_error
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import ColumnRow
 from ryusa.model.traffic import IN, OUT
 from ryusa.spelling import known_word, nearest_word
 
 FEWEST = 3  # segments with a deposit to which a line is fitted
+ROUND_OFF = 1.0e-9  # of the grains in a reach, which are added up; less than that is no grain
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,9 +38,9 @@ class Deposit(Averaged):
     stored : the same less that in the first frame.
     brought : volume per width that came over the upstream end of the reach or by feeds within it, since then.
     passed : that went over the downstream end or by exits within it.
-    trapped : stored over brought [-]; nan where nothing was brought.
+    trapped : stored over brought [-]; nan where nothing was brought, to round-off.
     unaccounted : grains in the frame less those that feeds and exits have left there [m2]; round-off.
-    averages : of the slope, of the rates of these volumes, and of the trapped share over the window.
+    averages : of the slope and the rates of these volumes over the window; the trapped share at its end.
     """
 
     t: Floats
@@ -127,10 +128,11 @@ def deposit(
         ratio(f"{name}_rate", "m2/s", [np.diff(one)], [dt], window)
         for name, one in (("stored", stored), ("brought", brought), ("passed", passed))
     ]
-    averages.append(ratio("trapped_share", "-", [np.diff(stored)], [np.diff(brought)], window))
-    scatter = float(np.sqrt(np.nanmean(error**2))) if np.isfinite(error).any() else math.nan
+    came_in = brought > ROUND_OFF * (held.max() + abs(brought).max())
     with np.errstate(invalid="ignore", divide="ignore"):
-        trapped = np.where(brought > 0.0, stored / brought, math.nan)
+        trapped = np.where(came_in, stored / brought, math.nan)
+    averages.append(_counted("trapped_share", float(trapped[-1]), window))
+    scatter = float(np.sqrt(np.nanmean(error**2))) if np.isfinite(error).any() else math.nan
     return Deposit(
         t, (low, high), fitted, slope, error, held, stored, brought, passed, trapped, over[:, 0],
         Averages(
@@ -139,9 +141,29 @@ def deposit(
                 f"reach: x = {low:.4g} to {high:.4g} m; since t = {t[0]:.4g} s {brought[-1]:.4g} m2 came and "
                 f"{passed[-1]:.4g} m2 went, {stored[-1]:.4g} m2 are stored, per width and without pores",
                 _of_fit(fitted, slope, scatter),
+                _of_share(bool(came_in[-1]), low),
             ),
         ),
     )  # fmt: skip
+
+
+def _counted(name: str, value: float, window: tuple[float, float]) -> Average:
+    """A share of grains that were counted, which has no error in its own run."""
+    nan = math.nan
+    return Average(name, "-", value, nan, int(math.isfinite(value)), 0, nan, window, nan, nan, nan)
+
+
+def _of_share(came: bool, low: float) -> str:
+    """What the trapped share is, in words."""
+    if came:
+        return (
+            "trapped share: counted at the last frame, so without an error of its own; how much it differs "
+            "from run to run, runs with other seeds tell"
+        )
+    return (
+        f"trapped share: none, since no grain came into the reach at x = {low:.4g} m or by a feed. Of grains "
+        "that lie in it from the start it says nothing: begin the reach downstream of them (--reach)"
+    )
 
 
 def _reach(row: ColumnRow, dam: str | None, reach: tuple[float, float] | None) -> tuple[float, float, float]:

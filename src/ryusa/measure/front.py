@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
-from ryusa.measure.statistics import ratio
+from ryusa.measure.statistics import Average, ratio
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import Scene
 from ryusa.model.arrays import Bools
@@ -65,7 +65,8 @@ def front(run: Run, begin: float | None = None, end: float = math.inf) -> Front:
     from where it was then, in any direction: grains of a bed over which the front has not gone do not count.
     One that has left counts where it left, and each sphere of a clump with its share of the volume. Two
     fronts are given, since single grains may run ahead: that of the first grain, and that beyond which 5 % of
-    the volume is. Mean speeds are the way of a front over the time.
+    the volume is. Mean speeds are the way of a front over the time until it first is within a diameter of the
+    farthest that it comes: not over the time in which it lies there or has left.
     """
     scene = run.scene
     if math.isfinite(float(scene.period[0])):
@@ -94,10 +95,11 @@ def front(run: Run, begin: float | None = None, end: float = math.inf) -> Front:
             first[m], main[m] = x[counted, 0].max(), _beyond(x[counted, 0], solid[counted])
     window = (float(t[0]), float(t[-1]))
     known = np.isfinite(main)
-    items = [
-        ratio(f"{name}_speed", "m/s", [np.diff(one[known])], [np.diff(t[known])], window)
-        for name, one in (("first", first), ("front", main))
-    ]
+    items: list[Average] = []
+    for name, one in (("first", first), ("front", main)):
+        way, at = one[known], t[known]
+        on = 1 + int(np.argmax(way >= way.max(initial=-math.inf) - scene.d_mean)) if len(way) else 0
+        items.append(ratio(f"{name}_speed", "m/s", [np.diff(way[:on])], [np.diff(at[:on])], window))
     note = f"at the end no grain has come in or is farther than {FAR:g} d from where it was"
     if known[-1]:
         note = (

@@ -150,16 +150,17 @@ def loads(run: Run, begin: float | None = None, end: float = math.inf, window: f
     dt, both = np.diff(t), water[:, :, :3] + grains
     span, ends = float(dt.max()) if window is None else max(window, float(dt.max())), (t[0], t[-1])
     largest = [_largest(both[:, s, 0], t, span) for s in range(len(found))]
-    fronts = [
-        None if one.dam is None else approaching_front(run, one.dam, kept, both[:, s, 0], largest[s][1])
+    sought = [
+        "" if one.dam is None else approaching_front(run, one.dam, kept, both[:, s, 0], largest[s][1])
         for s, one in enumerate(found)
     ]
+    fronts = [None if isinstance(one, str) else one for one in sought]
     items: list[Average] = []
     for s, one in enumerate(found):
         parts = {"water": water[:, s, :3], "grains": grains[:, s], "both": both[:, s]}
         items += _averages(one, parts, dt, ends, height[:, s], width, span, largest[s][1])
         items += _of_front(one, fronts[s], largest[s][1] / width, ends)
-        said += _said_of(one, fronts[s], both[:, s, 0], largest[s][1])
+        said += _said_of(one, sought[s], both[:, s, 0], largest[s])
     first = f"for a width of {width:.4g} m; largest loads and percentiles are of means over {span:.3g} s"
     return Loads(
         0.5 * (t[1:] + t[:-1]), tuple(one.name for one in found), width,
@@ -219,15 +220,20 @@ def _of_front(
     return items
 
 
-def _said_of(one: Structure, front: ApproachingFront | None, force: Floats, largest: float) -> list[str]:
-    """Where and when the front against a dam was measured, and what the formulae are."""
-    if front is None:
-        if one.dam is None or not rose_at_once(force, largest):
+def _said_of(
+    one: Structure, front: ApproachingFront | str, force: Floats, largest: tuple[float, float]
+) -> list[str]:
+    """Where and when the front against a dam was measured and what the formulae are, or why there is none."""
+    when, most = largest
+    if isinstance(front, str):
+        if one.dam is None:
             return []
-        return [
-            f"the load on {one.name} rose so fast that a front may have struck it; frames are too far apart "
-            "to measure one and to hold formulae against it (`record.frames`)"
-        ]
+        if rose_at_once(force, most):
+            return [
+                f"the load on {one.name} rose so fast that a front may have struck it; frames are too far "
+                "apart to measure one and to hold formulae against it (`record.frames`)"
+            ]
+        return [f"no formulae for a front against {one.name}: {front}"]
     said = (
         f"front against {one.name}: flow from x = {front.reach[0]:.3g} to {front.reach[1]:.3g} m, from "
         f"{front.came:.3g} s until it struck at {front.struck:.3g} s; rho = {front.rho:.4g} kg/m3. Formulae: "
@@ -236,6 +242,11 @@ def _said_of(one: Structure, front: ApproachingFront | None, force: Floats, larg
     )
     if front.behind_bore > front.tall:
         said += f". Behind that bore it would be {front.behind_bore:.3g} m deep: the dam is lower"
+    if when > front.struck + (front.struck - front.came):
+        said += (
+            f". Its largest load came at {when:.3g} s, from what followed the front: the formulae are not "
+            "for that"
+        )
     return [said]
 
 

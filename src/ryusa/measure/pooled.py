@@ -20,7 +20,8 @@ def pooled(runs: Sequence[Averages]) -> Averages:
     -------
     averages : of every quantity that all runs have samples of: the mean of the runs, each counted once, and
         the standard error of that mean from their scatter, widened by Student's t. A quantity is steady where
-        it is so in every run; `n_series` is the number of runs.
+        it is so in every run, its `variation` is the largest of theirs and its `drift` their mean; `n_series`
+        is the number of runs.
 
     Raises
     ------
@@ -58,5 +59,6 @@ def mean_of_runs(column: Sequence[Average]) -> Average:
         n_series=len(column),
         independent=min(one.independent for one in column),
         window=(min(one.window[0] for one in column), max(one.window[1] for one in column)),
+        drift=math.fsum(one.drift for one in column) / len(column),
         steady_from=math.nan if any(math.isnan(one) for one in begins) else max(begins),
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ryusa.cases.questions import CaseQuestion
 from ryusa.errors import RyusaError
 from ryusa.measure.formulae import predicted
+from ryusa.measure.pooled import mean_of_runs
 from ryusa.measure.statistics import Average
 from ryusa.report.headlines import Headline, taken
 from ryusa.results import Results
@@ -14,6 +15,7 @@ from ryusa.study.interval import Interval, not_negative, over_seeds, short
 
 MOST = 5  # sentences
 WIDE = 0.5  # half an interval over its value from which a number is called poorly known
+SMALL = 0.02  # difference of two halves of a record over their mean that changes no answer
 
 
 @dataclass(frozen=True)
@@ -44,18 +46,24 @@ class BriefAnswer:
     beside: str
 
 
-def answer(runs: Sequence[Results], question: CaseQuestion, begin: float | None = None) -> BriefAnswer:
+def answer(
+    runs: Sequence[Results],
+    question: CaseQuestion,
+    begin: float | None = None,
+    reach: tuple[float, float] | None = None,
+) -> BriefAnswer:
     """Answer a question by runs of one case that differ in their seed.
 
     Parameters
     ----------
     begin : of the window of its averages [s]; default that of each measure.
+    reach : of a row, in which a deposit is measured [m]; default that of the measure.
     """
     columns: dict[Headline, list[Average]] = {}
     reasons: list[str] = []
     for measure in question.measures:
         try:
-            found = [taken(one, measure, begin) for one in runs]
+            found = [taken(one, measure, begin, reach) for one in runs]
         except RyusaError as error:
             reasons.append(f"{measure}: {error}")
             continue
@@ -72,7 +80,7 @@ def answer(runs: Sequence[Results], question: CaseQuestion, begin: float | None 
         return BriefAnswer(f"None: these runs do not answer the question ({why}).", False, (), "")
     alone = not runs[0].scene.n_grain and runs[0].row is not None
     sentences = tuple(_sentence(line, column, alone) for line, column in chosen.items())
-    unsteady = any(one.changes for one in next(iter(chosen.values())))
+    unsteady = _unsteady(next(iter(chosen.values())))
     every = [one for column in chosen.values() for one in column]
     verdict = _verdict(runs, every, unsteady, alone)
     return BriefAnswer(verdict, not unsteady and (alone or len(runs) > 1), sentences, _beside(runs, chosen))
@@ -117,29 +125,44 @@ def _sentence(line: Headline, column: Sequence[Average], alone: bool) -> Sentenc
     if min(values) >= 0.0:
         found = not_negative(found)
     unit = "" if line.unit == "-" else "°" if line.unit == "deg" else f" {line.unit}"
-    changing = max(column, key=lambda one: abs(one.variation) if one.changes else -1.0)
-    if changing.changes:
-        return Sentence(before, f"{short(found.value)}{unit}", after, _of_change(changing, unit))
+    whole = mean_of_runs(column) if len(column) > 1 else column[0]
+    change = _change(whole, unit) if any(one.changes for one in column) else ""
+    if _unsteady(column):
+        sure = "still changing at the end of the run"
+        if column[0].n_series:
+            sure = f"not steady from {whole.window[0]:.3g} to {whole.window[1]:.4g} s{change}"
+        return Sentence(before, f"{short(found.value)}{unit}", after, sure)
     if len(values) == 1:
-        of = column[0]
-        sure = "" if alone or not of.n_series else f"mean from {of.window[0]:.3g} to {of.window[1]:.4g} s"
+        counts = alone or not whole.n_series
+        sure = "" if counts else f"mean from {whole.window[0]:.3g} to {whole.window[1]:.4g} s{change}"
         return Sentence(before, f"{short(found.value)}{unit}", after, sure)
     value, low, high = _rounded(found)
-    sure = f"95 % interval {low} to {high}{unit}"
+    sure = f"95 % interval {low} to {high}{unit}{change}"
     if found.high - found.value > WIDE * abs(found.value):
         sure += ": poorly known, more runs would narrow it"
     return Sentence(before, f"{value}{unit}", after, sure)
 
 
-def _of_change(one: Average, unit: str) -> str:
-    if one.n_series == 0:
-        return "still changing at the end of the run"
-    change = ""
-    if math.isfinite(one.drift):
-        by = " points" if unit == " %" else unit
-        way = "higher" if one.drift > 0.0 else "lower"
-        change = f", second half {way} by {short(abs(one.drift))}{by}"
-    return f"not steady from {one.window[0]:.3g} to {one.window[1]:.4g} s{change}"
+def _unsteady(column: Sequence[Average]) -> bool:
+    """Whether a number changes by more than two hundredths of itself, and than its interval over the runs.
+
+    A long record shows that it changes also where it hardly does; such a number is an answer.
+    """
+    if not any(one.changes for one in column):
+        return False
+    values, drift = [one.value for one in column], sum(one.drift for one in column) / len(column)
+    if not math.isfinite(drift) or any(math.isinf(one.variation) for one in column):
+        return True
+    found = over_seeds(values, "-")
+    half = found.high - found.value if len(values) > 1 else 0.0
+    return abs(drift) > max(SMALL * abs(found.value), half)
+
+
+def _change(one: Average, unit: str) -> str:
+    if not math.isfinite(one.drift):
+        return ""
+    by = " points" if unit == " %" else unit
+    return f", second half {'higher' if one.drift > 0.0 else 'lower'} by {short(abs(one.drift))}{by}"
 
 
 def _rounded(found: Interval) -> tuple[str, str, str]:
@@ -167,7 +190,14 @@ def _beside(runs: Sequence[Results], chosen: dict[Headline, list[Average]]) -> s
     scale = math.sqrt((rho / rho_w - 1.0) * float(runs[0].case["derived"]["g"]) * scene.d_mean**3)
     rates = {name: rate * scale * rho for name, rate in predicted(tau).items()}
     given = ", ".join(f"{name} {short(rate)} kg/s/m" for name, rate in rates.items())
+    of_case = float(runs[0].case["derived"].get("tau_star") or math.nan)
+    apart = ""
+    if abs(tau - of_case) > SMALL * of_case:
+        apart = (
+            f"By depth and slope the Shields number is {short(of_case)}; the bed takes {short(tau)} while "
+            f"the water still {'slows down' if tau > of_case else 'speeds up'}, or grains take part. "
+        )
     return (
-        f"For comparison, formulae for a plane bed at the same Shields number: {given}. In the picture, "
-        f"q_* = 1 stands for {short(scale * rho)} kg/s/m."
+        f"{apart}For comparison, formulae for a plane bed at the Shields number of the bed: {given}. In the "
+        f"picture, q_* = 1 stands for {short(scale * rho)} kg/s/m."
     )

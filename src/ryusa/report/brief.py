@@ -28,7 +28,13 @@ BROWSERS = (
 PATIENCE = 120.0  # longest time for printing [s]
 
 
-def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float | None = None) -> str:
+def brief_page(
+    runs: Sequence[Results],
+    *,
+    like: str | None = None,
+    begin: float | None = None,
+    reach: tuple[float, float] | None = None,
+) -> str:
     """Write the sheet about runs of one case.
 
     Parameters
@@ -36,6 +42,7 @@ def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float
     runs : one, or several that differ in their seed.
     like : packaged case whose question is answered; default the one that the case resembles most.
     begin : of the window of averages [s]; default that of each measure.
+    reach : of a row, in which a deposit is measured [m]; default that of the measure.
 
     Raises
     ------
@@ -52,7 +59,7 @@ def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float
     return template(HERE / "brief.html").render(
         title=about.title,
         question=question.asked,
-        answer=answer(runs, question, begin),
+        answer=answer(runs, question, begin, reach),
         picture=_picture(about, runs[0], question),
         of_run=runs[0].folder.resolve().name if len(runs) > 1 else "",
         conditions=conditions(runs, about.values),

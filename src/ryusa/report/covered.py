@@ -176,7 +176,8 @@ def _water(first: Results, explained: dict[str, ExplainedValue]) -> str:
 
 def _wall(one: ExplainedValue) -> str:
     shape = one.origin.partition(";")[0]
-    return f"{one.name.partition(':')[0]}, {shape} {one.shown.replace(' x 0 cm', ' cm').replace('0 x ', '')}"
+    size = re.sub(r"(?<![\d.])0 x ", "", one.shown.replace(" x 0 cm", " cm"))
+    return f"{one.name.partition(':')[0]}, {shape} {size}"
 
 
 def _feed(one: Any) -> str:

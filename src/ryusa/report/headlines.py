@@ -66,7 +66,7 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("*: force x, both, largest, by width", "The largest is {}.", "N/m"),
         Headline(
             "*: overturning, both, largest, by width",
-            "The largest moment of the load about its toe is {}, and overturns it where above 0.",
+            "The largest moment about its toe, positive where it overturns it, is {}.",
             "N m/m",
         ),
     ),
@@ -77,12 +77,14 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("below", "The bed upstream of the dam ends {} below crest level.", "mm", 1.0e3),
     ),
     "deposit": (
-        Headline("trapped_share", "{} of the arriving grains are trapped.", "%", 100.0),
         Headline(
-            "last:stored_m2", "{} of grains per metre of width have been added, pores left out.",
-            "m³",
+            "trapped_share", "Of the grains that came into {where}, {} are still there at the end.", "%",
+            100.0,
         ),
-        Headline("slope", "The deposit has a slope of {}.", "%", 100.0),
+        Headline(
+            "last:stored_m2", "The volume of grains in {where}, per metre of width, has changed by {}.", "m³"
+        ),
+        Headline("last:slope", "The deposit in {where} has a slope of {} at the end.", "%", 100.0),
     ),
     "discharge": (
         Headline("rate_out", "Grains leave at {}.", "kg/s"),
@@ -119,12 +121,15 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
 }  # fmt: skip
 
 
-def taken(results: Results, measure: str, begin: float | None) -> dict[Headline, Average]:
+def taken(
+    results: Results, measure: str, begin: float | None, reach: tuple[float, float] | None = None
+) -> dict[Headline, Average]:
     """The numbers of a measure that a run has, in the unit of their sentences.
 
     Parameters
     ----------
     begin : of the window [s]; None for that of the measure, and of water alone the last fifth of the record.
+    reach : begin and end of the reach [m] of a measure that has one; None for its own.
 
     Raises
     ------
@@ -133,7 +138,8 @@ def taken(results: Results, measure: str, begin: float | None) -> dict[Headline,
     alone = not results.scene.n_grain and results.row is not None
     if begin is None and alone:
         begin = 0.8 * float(results.frames.t[-1])
-    record = _OWN[measure](results, begin) if measure in _OWN else _measured(results, measure, begin)
+    given = {"begin": begin, "reach": reach}
+    record = _OWN[measure](results, begin) if measure in _OWN else _measured(results, measure, given)
     found: dict[Headline, Average] = {}
     for line in HEADLINES[measure]:
         for one in _numbers(record, line.take):
@@ -142,19 +148,24 @@ def taken(results: Results, measure: str, begin: float | None) -> dict[Headline,
             if line.take == "rate_in" and not (results.scene.traffic and results.scene.traffic.feeds):
                 continue
             name = one.name.partition(":")[0] if "*" in line.take else ""
-            said = replace(line, sentence=line.sentence.replace("{name}", f"“{name}”"))
+            low, high = getattr(record, "reach", (math.nan, math.nan))
+            words = {"{name}": f"“{name}”", "{where}": f"x = {low:.4g} to {high:.4g} m"}
+            sentence = line.sentence
+            for word, text in words.items():
+                sentence = sentence.replace(word, text)
+            said = replace(line, sentence=sentence)
             found[said] = _in_unit(one, line, alone)
     return found
 
 
-def _measured(results: Results, measure: str, begin: float | None) -> Any:
+def _measured(results: Results, measure: str, given: dict[str, Any]) -> Any:
     entry = next(one for one in MEASURES if one.name == measure)
     if measure in _EITHER and (measure == "saltation") != (results.case["build"]["kind"] == "saltation"):
         raise ResultsError("a case with single grains over a fixed bed has hops, another a rate")
     if measure == "walls" and results.row is not None:
         raise ResultsError("loads has the force of the grains on a dam of a row too")
-    window = {"begin": begin} if begin is not None and "begin" in entry.options else {}
-    return called(entry)(results, **window)
+    options = {name: one for name, one in given.items() if one is not None and name in entry.options}
+    return called(entry)(results, **options)
 
 
 def _numbers(record: Any, take: str) -> list[Average]:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError
 from ryusa.laws.collision import (
-    collision_time,
     damping_ratio,
     effective_mass,
     effective_mass_tangential,
@@ -19,6 +18,7 @@ from ryusa.laws.collision import (
 from ryusa.laws.families import Adhesion, ContactTiming, WaterTorque
 from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
+from ryusa.measure.collisions import CLOSING_LEAST, speed_of_weight
 from ryusa.model import Scene, State, Tally, Term
 from ryusa.model.contact_law import ContactLaw, shortest_contact_of, stiffness_key
 from ryusa.model.scene import Damping
@@ -33,7 +33,6 @@ PASSED = 0.64  # overlap/d below which no grain passes through another (design/0
 STEPS_LEAST = {ContactTiming.EXACT: 5.0, ContactTiming.AT_STEPS: 10.0}
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
-_CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight changes the speed by 5 % or more
 _BOUNCE_LONGEST = 3.0  # times the shortest contact: in longer contacts a grain rolls or rests
 _SLIP_LEAST = 0.1  # of the closing speed: with less slip tangential restitution is not measured
 _MOST = np.iinfo(np.int64).max  # upper limit of the number of contacts
@@ -77,7 +76,7 @@ class Watch:
         self.rest = NO_REST  # the account when the grains last rested
         self.n_contact = 0
         self.t_col_shortest = shortest_collision_time(scene, state)
-        self._g_t_col = _speed_of_weight(scene)
+        self._g_t_col = speed_of_weight(scene)
         low, high = _DECADES
         self._edges = np.logspace(low, high, (high - low) * _BINS + 1)
         self._histogram = np.zeros(len(self._edges) - 1, dtype=np.int64)
@@ -110,7 +109,7 @@ class Watch:
         bounce = bed & (events["j"] < self.scene.n_grain + self.scene.n_fixed)
         bounce &= duration < _BOUNCE_LONGEST * self.t_col_shortest
         self._along_bed(events[bounce], duration[bounce])
-        lonely = (events["alone"] == 1.0) & (events["closing_begin"] > _CLOSING_LEAST * self._g_t_col)
+        lonely = (events["alone"] == 1.0) & (events["closing_begin"] > CLOSING_LEAST * self._g_t_col)
         for name, partner in (("fixed", bed), ("free", ~bed)):
             self._restitution(events[lonely & partner], name)
 
@@ -349,16 +348,6 @@ def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | N
         e_s = restitution_tension(damping_ratio(law.eta_s, law.k_s, m_t)) if law.k_s > 0.0 else None
         found[name] = (e_n, e_s)
     return found
-
-
-def _speed_of_weight(scene: Scene) -> float:
-    """Speed that the heaviest grain gains by its weight within one contact [m/s]."""
-    if scene.n_grain == 0:
-        return 0.0
-    k = int(np.argmax(scene.m))
-    m = float(scene.m[k] + scene.m_added[k])  # that of a sphere of a clump, at most: contacts judged are more
-    g = float(np.linalg.norm(scene.gravity)) * abs(float(scene.m_weight[k])) / m
-    return g * collision_time(m, scene.contact.k_n)
 
 
 def _free_pairs(scene: Scene, state: State) -> bool:
