@@ -1,5 +1,6 @@
 """How averages are printed: errors, verdicts, and the begin that is suggested."""
 
+from dataclasses import fields
 from types import SimpleNamespace
 
 import numpy as np
@@ -65,3 +66,15 @@ def test_round_off_of_a_long_section_is_printed_as_0(capsys):
     print_found("long_section", found, None)
     text = capsys.readouterr().out
     assert "e-18" not in text and "0.0002" in text
+
+
+def test_where_a_flow_is_as_dense_as_a_bed_its_table_says_how_to_end_the_bed(capsys):
+    n = 4
+    numbers = {"t": 0.0, "slope": 0.0, "dams": (), "window": None, "error": {}, "grains": True}
+    arrays = {one.name: np.ones(n) for one in fields(LongSection) if one.name not in numbers}
+    arrays["transport_concentration"] = np.full(n, 0.4)
+    fast = {"froude": np.array([0.5, 12.0, 80.0, np.nan])}
+    print_found("long_section", LongSection(**numbers, **(arrays | fast)), None)
+    assert "in 2 of 4 segments most grains flow below the line of the bed" in capsys.readouterr().out
+    print_found("long_section", LongSection(**numbers, **arrays), None)
+    assert "--bed rest" not in capsys.readouterr().out

@@ -61,6 +61,19 @@ def test_a_pile_at_rest_carries_the_weight_above_at_every_height(resting):
     assert found["bed_shear"].value == pytest.approx(6 * M * 3.0 / AREA, rel=1e-12)
 
 
+def test_what_presses_from_above_is_apart_from_what_carries_from_below(resting):
+    """A grain on the floor under a fixed grain that pushes it down and along x."""
+    lid = np.array([2.0e-4, 0.0, -5.0e-4])
+    x = np.array([[D, D, 0.5 * D]])
+    run = resting(x, [(0, 1, lid), (0, 2, -M * GRAVITY - lid)], fixed=(D, D, 1.4 * D))
+    found = contact_stress(run)
+    assert found["lid_normal"].value == pytest.approx(5.0e-4 / AREA, rel=1e-12)
+    assert found["lid_shear"].value == pytest.approx(2.0e-4 / AREA, rel=1e-12)
+    assert found["bed_normal"].value == pytest.approx((9.0 * M + 5.0e-4) / AREA, rel=1e-12)
+    assert found["bed_shear"].value == pytest.approx((3.0 * M + 2.0e-4) / AREA, rel=1e-12)
+    assert not any(one.name.startswith("lid") for one in contact_stress(resting(*pile())).averages.items)
+
+
 def test_a_grain_held_too_weakly_is_found_by_the_balance(resting):
     x, contacts = pile()
     i, j, force = contacts[3]

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 DIAMETERS = 1.0e-3  # default threshold, in mean diameters
 WIDTH = 120  # columns where the output is no terminal
+DENSE, FAST = 0.3, 10.0  # concentration of a discharge as dense as a bed, and a Froude number of no such flow
 LINES = 12  # windows printed, and rows of a table that has no form of its own
 
 
@@ -212,7 +213,21 @@ def _print_long_section(found: "LongSection") -> None:
     _show(
         table, *more, f"--csv FILE writes all segments and columns{errors}",
         "q_s: volume of grains per width and time; q = q_s + q_w; c: concentration between bed and surface",
+        *_of_flowing_bed(found),
     )  # fmt: skip
+
+
+def _of_flowing_bed(found: "LongSection") -> list[str]:
+    """Where what flows is so dense that the rule for a packed bed takes it for the bed."""
+    carried, froude = np.nan_to_num(found.transport_concentration), np.nan_to_num(found.froude)
+    flows = (carried > DENSE) & (froude > FAST)
+    if not flows.any():
+        return []
+    return [
+        f"in {flows.sum()} of {len(flows)} segments most grains flow below the line of the bed, as dense as "
+        "a bed: speed, Froude number and energy there are those of the thin layer above it. --bed rest ends "
+        "the bed where grains rest, as a debris flow needs it"
+    ]
 
 
 def _table(names: tuple[str, ...], left: tuple[str, ...] = ("unit",)) -> Table:

@@ -24,6 +24,7 @@ PLANE = ((0, 0), (2, 2), (0, 2))  # components of the fabric over height: in the
 REACH = 4.0  # lengths of coarse graining beyond the outermost grains
 FLAT = 1.0e-6  # branch vectors flatter than this, in lengths of coarse graining, count as level
 BLOCK = 2_000  # contacts or grains taken at once
+LID = 0.5  # vertical part of a branch vector from which on its fixed partner lies above the grain
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,8 +53,9 @@ class ContactStress(Averaged):
     deviation, deviation_along : largest difference from these over the whole weight, or over the largest load
         where a lid makes it more [-]; nan under water.
     area : by which the sums are divided [m2].
-    averages : force of fixed grains, planes and walls on the grains, per area, normal to the bed and along
-        it; fabric of the contacts of free grains.
+    averages : force per area of fixed grains, planes and walls on the grains, normal to the bed and against
+        x: of those below and beside them as `bed_normal` and `bed_shear`, and where a lid presses from above
+        `lid_normal`, downwards, and `lid_shear`, along x; fabric of the contacts of free grains.
     """
 
     z: Floats
@@ -145,7 +147,8 @@ def contact_stress(
     z = _heights(run, first, last, scene, length)
     frames = [_frame(run, k, z, length) for k in range(first, last)]
     *sums, directions, fabric = (np.array(one) for one in zip(*frames, strict=True))
-    contact, moved, weights, bed = (one / area for one in sums)
+    contact, moved, weights, held = (one / area for one in sums)
+    bed, lid = held[:, 0], held[:, 1]
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
     pressure = whole[:, (XX, ZZ) if scene.plane_case else (XX, YY, ZZ)].mean(axis=1)
@@ -189,6 +192,11 @@ def contact_stress(
             (
                 average("bed_normal", "Pa", [bed[:, 2]], window),
                 average("bed_shear", "Pa", [-bed[:, 0]], window),
+                *(
+                    average(name, "Pa", [force], window)
+                    for name, force in (("lid_normal", -lid[:, 2]), ("lid_shear", lid[:, 0]))
+                    if lid.any()
+                ),
                 *(
                     average(f"fabric_{name}", "-", [fabric[np.isfinite(fabric[:, c]), c]], window)
                     for c, name in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))
@@ -270,7 +278,8 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, ...]:
     contact : stress of the contacts [N], (5, n_layer).
     moved : G times mass, momentum and its flux, (9, n_layer) [kg/m], [kg/s], [N].
     weights : along the bed and normal to it, less what fixed grains and planes carry above, (2, n_layer) [N].
-    bed : force of fixed grains, planes and walls on the grains [N], (3,).
+    held : force of fixed grains, planes and walls on the grains [N], of those below and beside them and of
+        those above, (2, 3).
     directions : G along contacts of free grains, alone and times n_x n_x, n_z n_z and n_x n_z, (4, n_layer).
     fabric : mean of n_a n_b of the contacts of free grains, xx, yy, zz, xy, xz, yz [-], (6,).
     """
@@ -306,7 +315,9 @@ def _frame(run: Run, k: int, z: Floats, length: float) -> tuple[Floats, ...]:
         weights += np.array([scene.gravity[0] * share, -scene.gravity[2] * share])
     n = n[~bound]
     every = [(n[:, a] * n[:, b]).mean() if len(n) else math.nan for a, b in FABRIC]
-    return contact, moved, weights, f[bound].sum(axis=0), directions, np.array(every)
+    above = bound & (branch[:, 2] < -LID * np.linalg.norm(branch, axis=1))
+    held = np.array([f[bound & ~above].sum(axis=0), f[above].sum(axis=0)])
+    return contact, moved, weights, held, directions, np.array(every)
 
 
 def _line(z: Floats, top: Floats, rise: Floats, length: float) -> Floats:
