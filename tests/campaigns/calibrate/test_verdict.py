@@ -133,6 +133,17 @@ def test_no_parameter_is_named_that_the_emulator_knows_nothing_of():
     assert found.compared[0].move is None
 
 
+def test_runs_that_follow_no_parameter_give_no_verdict_on_the_model_within_them():
+    u = np.repeat(filling_points(2, 8, 1), 2, axis=0)
+    values = 10.0 + np.random.default_rng(1).standard_normal(len(u))
+    made = emulate(u, values)
+    found = verdict_on((made, values), Seen(made, float(values.max()) - 0.01, 0.1))
+    assert not found.reached and found.compared[0].untold
+    assert headline(found, (A, B)).startswith("These runs do not tell whether the model reaches")
+    assert any("may reverse it" in one for one in remarks(found, (A, B), [SLOPE], ["-"], []))
+    assert verdict_on((made, values), Seen(made, 30.0, 0.1)).refusal == UNREACHED
+
+
 @pytest.mark.full
 def test_intervals_and_verdicts_are_right_as_often_as_they_say(line):
     """60 truths on a line with scatter, each observed once, and each moved out of reach."""

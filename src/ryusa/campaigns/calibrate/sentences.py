@@ -9,7 +9,6 @@ from ryusa.campaigns.calibrate.heaps import OTHER
 from ryusa.campaigns.calibrate.prior import Prior
 from ryusa.campaigns.calibrate.verdict import (
     FAR,
-    UNREACHED,
     CalibrationVerdict,
     ComparedObservation,
     ParameterMove,
@@ -29,8 +28,8 @@ def shown(unit: str) -> tuple[str, float]:
 
 def headline(verdict: CalibrationVerdict, priors: Sequence[Prior]) -> str:
     """The verdict in one sentence or two."""
-    if not verdict.reached:
-        return f"{UNREACHED[0].upper()}{UNREACHED[1:]}."
+    if verdict.refusal:
+        return f"{verdict.refusal[0].upper()}{verdict.refusal[1:]}."
     found = [prior.key for prior, one in zip(priors, verdict.determined, strict=True) if one]
     lacking: dict[str, list[str]] = {}
     for k, prior in enumerate(priors):
@@ -47,7 +46,7 @@ def status(verdict: CalibrationVerdict, k: int) -> str:
     """The verdict on parameter k, for a table."""
     if not verdict.reason(k):
         return "determined"
-    return UNREACHED if not verdict.reached else f"not determined: {verdict.reason(k)}"
+    return verdict.refusal or f"not determined: {verdict.reason(k)}"
 
 
 def remarks(
@@ -70,6 +69,11 @@ def remarks(
     for one, compared, unit in zip(observations, verdict.compared, units, strict=True):
         if not compared.reached:
             said.append(f"{one.words}: {_distance(compared, unit)}. {move_words(compared.move, priors)}.")
+        if compared.untold:
+            said.append(
+                f"{one.words}: runs that are left out are not foreseen, so that this is no verdict on the "
+                "model. More points (calibrate.points), more seeds or larger samples may reverse it."
+            )
     for prior, edge in zip(priors, verdict.edges, strict=True):
         if edge is None:
             continue

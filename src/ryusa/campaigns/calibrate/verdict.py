@@ -18,6 +18,8 @@ AT_EDGE = 0.25  # posterior over prior at an end, over its largest value, from w
 REACHES = (0.25, 0.5, 1.0)  # shares of the prior on either side over which a slope is taken
 LOW, HIGH = "low", "high"
 UNREACHED = "the model does not reach these observations"
+UNTOLD = "these runs do not tell whether the model reaches these observations"
+FOLLOWS = 0.9  # error of a run that is left out, over the scatter of all runs, from which none is foreseen
 ONE_SEED = "one seed, which says nothing of the scatter between runs"
 UNDETERMINED = "these data say too little"
 
@@ -66,6 +68,8 @@ class ComparedObservation:
     least, most : of all runs.
     noise : standard deviation between seeds.
     move : the parameter that would have to move least; None where none moves the quantity.
+    follows : whether the runs follow the parameters by more than their scatter, so that those left out are
+        foreseen.
     """
 
     value: float
@@ -77,6 +81,7 @@ class ComparedObservation:
     most: float
     noise: float
     move: ParameterMove | None = None
+    follows: bool = True
 
     @property
     def misfit(self) -> float:
@@ -98,6 +103,11 @@ class ComparedObservation:
     def reached(self) -> bool:
         """Whether it lies within 2 standard deviations of the posterior, and of the runs."""
         return abs(self.misfit) <= FAR and self.beyond <= FAR
+
+    @property
+    def untold(self) -> bool:
+        """Whether it is not reached by an emulator that foresees no run, but lies within the runs."""
+        return not (self.reached or self.follows) and self.least <= self.value <= self.most
 
 
 @dataclass(frozen=True)
@@ -132,10 +142,16 @@ class CalibrationVerdict:
         """By parameter, whether the observations determine it."""
         return tuple(not self.reason(k) for k in range(len(self.learnt)))
 
+    @property
+    def refusal(self) -> str:
+        """Why there is no answer at all; "" where there is one."""
+        missed = [one for one in self.compared if not one.reached]
+        return "" if not missed else UNTOLD if all(one.untold for one in missed) else UNREACHED
+
     def reason(self, k: int) -> str:
         """Why parameter k is not determined; "" where it is."""
-        if not self.reached:
-            return UNREACHED
+        if self.refusal:
+            return self.refusal
         if self.seeds < 2:
             return ONE_SEED
         if not self.learnt[k]:
@@ -162,11 +178,13 @@ def judge(
     for one, held in zip(seen, values, strict=True):
         mean, sd = one.emulator.at(u)
         predicted, unknown = float(mean.mean()), float(np.sqrt(np.mean(sd**2)))
+        away, _ = one.emulator.left_out()
         compared.append(
             ComparedObservation(
                 one.value, one.error, one.discrepancy, predicted, unknown, float(held.min()),
                 float(held.max()), one.emulator.noise,
                 _least_move(posterior.priors, one.emulator, middle, one.value - predicted),
+                float(np.sqrt(np.mean(away**2))) < FOLLOWS * float(held.std()),
             )
         )  # fmt: skip
     learnt: list[bool] = []
