@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
 
-__version__ = "0.1.0"
+from ryusa.version import __version__
 
 # name -> (module, name there); "" for the module itself. Loaded when first asked for.
 _LAZY = {

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from ryusa import __version__
 from ryusa.errors import RyusaError
+from ryusa.version import __version__
 
 # one module per family of commands; each puts its commands on the app with `register(app)`
 _FAMILIES = (

@@ -7,7 +7,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from ryusa import __version__
 from ryusa.cases.questions import CaseQuestion
 from ryusa.catalogue import PICTURES
 from ryusa.errors import ResultsError, RyusaError
@@ -19,6 +18,7 @@ from ryusa.results import Results
 from ryusa.results.shown import _saved
 from ryusa.running.resume import changes_of
 from ryusa.study.html import template
+from ryusa.version import __version__
 
 HERE = Path(__file__).parent
 BROWSERS = (

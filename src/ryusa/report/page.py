@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from ryusa import __version__
 from ryusa.errors import ResultsError
 from ryusa.report.contents import RunContents, contents_of
 from ryusa.results import Results
 from ryusa.study.html import template
+from ryusa.version import __version__
 from ryusa.view.page import component
 
 HERE = Path(__file__).parent

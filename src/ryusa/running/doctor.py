@@ -6,11 +6,11 @@ import sys
 import tempfile
 from typing import Any
 
-from ryusa import __version__
 from ryusa.compiled import store, tiers
 from ryusa.compiled.shipped import shipped
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
+from ryusa.version import __version__
 
 _LEAST_ROOM = 2**20  # bytes on the disk of compiled code, more than any file of it
 

@@ -10,9 +10,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from ryusa import __version__
 from ryusa.engine import registry
 from ryusa.results import schema
+from ryusa.version import __version__
 
 _PACKAGES = ("numpy", "numba", "llvmlite", "h5py", "pydantic", "pint", "scipy")
 _GIT_PATIENCE = 5.0  # s

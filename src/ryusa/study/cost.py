@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ryusa import __version__
 from ryusa.errors import CaseError
 from ryusa.running import provenance
 from ryusa.running.folder import format_bytes, free_bytes, nearest_existing
 from ryusa.study.task import CaseRun, Task
+from ryusa.version import __version__
 
 LATE = 3.0  # time limit of a job over the time estimated
 SHORTEST = 30  # time limit of a job at least [min]

@@ -14,12 +14,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from ryusa import __version__
 from ryusa.errors import ResultsError
 from ryusa.model import Scene, Walls
 from ryusa.model.wall_shape import lines_of, triangles_of
 from ryusa.results import Results
 from ryusa.running.inspection import state_of
+from ryusa.version import __version__
 from ryusa.view.box import box_of, needs_grains
 from ryusa.view.encode import Blob, add_colours, add_positions, positions, presence
 from ryusa.view.flow import flow_of
