@@ -8,7 +8,6 @@ import pytest
 
 from ryusa.build import build
 from ryusa.casefile.derive import derive
-from ryusa.casefile.earlier import completed
 from ryusa.casefile.explain import explain
 from ryusa.casefile.materials import case_of_pair, meeting
 from ryusa.casefile.read import json_schema, read_text
@@ -105,7 +104,6 @@ def test_without_materials_nothing_changes() -> None:
     assert not {"materials", "pairs"} & set(data)
     assert "material" not in data["planes"][0]
     assert "mixture" not in data["grains"]
-    assert completed(data, data) == data
 
 
 def test_the_check_lists_each_pair_that_meets() -> None:

@@ -97,7 +97,7 @@ def test_changed_verdicts_are_listed_against_an_earlier_ledger(tmp_path, monkeyp
 
 def test_a_ledger_of_another_study_is_refused(tmp_path):
     other = tmp_path / "paper.json"
-    other.write_text('{"format": 2, "study": "paper", "findings": [], "provenance": {}}', encoding="utf-8")
+    other.write_text('{"format": 3, "study": "paper", "findings": [], "provenance": {}}', encoding="utf-8")
     result = call("water_alone", "--quick", "-o", tmp_path / "out", "-q", "-j", 1, "--against", other)
     assert result.exit_code == 2
     assert "of 'paper', not of 'validation'" in result.output

@@ -7,7 +7,7 @@ import pytest
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Term
 from ryusa.results import Results, lazy
-from ryusa.results.schema import BEFORE_FILMS, TALLY
+from ryusa.results.schema import TALLY
 
 N = 23
 
@@ -126,16 +126,22 @@ def test_the_account_has_a_row_per_frame_and_every_book(folder: Path) -> None:
     assert tally["overlap_step"].tolist() == [7] * N
 
 
-def test_a_folder_older_than_the_film_term_is_read_with_that_term_zero(folder: Path) -> None:
-    before = Results.open(folder).tally
+def test_a_folder_with_other_terms_is_refused_as_of_another_version(folder: Path) -> None:
+    before = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != "film"])
     for path in (folder / "parts").glob("part-*.h5"):
         with h5py.File(path, "r+") as file:
             rows = file["tally"][:]
             del file["tally"]
-            file["tally"] = rows[list(BEFORE_FILMS.names or ())].astype(BEFORE_FILMS)
-    now = Results.open(folder).tally
-    assert not now["film"].any()
-    assert all(np.array_equal(now[name], before[name]) for name in before)
+            file["tally"] = rows[list(before.names or ())].astype(before)
+    with pytest.raises(ResultsError, match="'/tally' has other columns: another version of ryusa wrote it"):
+        Results.open(folder)
+
+
+def test_a_part_that_does_not_say_where_it_ends_is_refused(folder: Path) -> None:
+    with h5py.File(folder / "parts" / "part-000000.h5", "r+") as file:
+        del file.attrs["end_step"]
+    with pytest.raises(ResultsError, match="has no 'end_step'"):
+        Results.open(folder)
 
 
 def test_grains_bed_and_scene_come_back(folder: Path) -> None:

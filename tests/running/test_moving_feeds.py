@@ -128,7 +128,7 @@ def test_any_number_of_threads_and_stops_give_the_same_bits(
 
 
 def test_a_feed_that_stays_keeps_the_digest_of_its_scene() -> None:
-    """0021: runs of earlier versions, whose feeds have no wall, can be resumed."""
+    """0021: scenes say nothing of walls where no feed moves with one."""
     scene, _ = scene_of(x=[[0.0, 0.0, 0.01]], d=D)
     scene = replace(scene, traffic=Traffic((Feed("a", rate=1.0, count=1),), (Exit("b"),), 10, 0))
     from ryusa.results.scene_file import _scalars

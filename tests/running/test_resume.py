@@ -217,6 +217,18 @@ def test_another_version_or_machine_is_reported_and_resumed_only_with_force(
     assert any("another version" in one for one in results.provenance["resumed"][0]["said"])
 
 
+def test_a_folder_without_a_key_of_today_is_refused_with_the_version(stopped: Path) -> None:
+    path = stopped / schema.CASE_JSON
+    data = json.loads(path.read_text())
+    del data["contact"]["timing"]
+    path.write_text(json.dumps(data))
+    made = json.loads((stopped / schema.PROVENANCE).read_text())
+    (stopped / schema.PROVENANCE).write_text(json.dumps({**made, "commit": "an earlier one"}))
+    said = "contact.timing None is now .*by another version: commit an earlier one is now "
+    with pytest.raises(CheckpointError, match=said):
+        run(stopped, resume=True, force=True)
+
+
 def test_without_a_checkpoint_a_run_starts_anew_and_says_so(tmp_path: Path) -> None:
     results = run(tmp_path / "run", resume=True)
     assert results.complete

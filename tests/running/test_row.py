@@ -1,9 +1,11 @@
 """A row of columns from a case file: it runs, is recorded and read back, and resumes with the same bits."""
 
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
@@ -112,6 +114,17 @@ def test_the_energy_account_of_the_water_closes(weir: Results) -> None:
     assert found.given["upstream"][-1] > found.lost["fall"][-1] > found.lost["bed"][-1] > 0.0
     assert found.given["downstream"][-1] < 0.0
     assert not any(one[0] for one in (*found.changed.values(), *found.lost.values()))
+
+
+def test_a_folder_of_a_version_without_the_account_is_refused(weir: Results, tmp_path: Path) -> None:
+    old = tmp_path / "old"
+    shutil.copytree(weir.folder, old)
+    parts = sorted((old / "parts").glob("part-*.h5"))
+    for path in parts:
+        with h5py.File(path, "r+") as file:
+            del file["row/energy"]
+    with pytest.raises(ResultsError, match="has no 'row/energy': another version of ryusa wrote it"):
+        water_energy(Results.open(old))
 
 
 def test_a_long_section_has_the_stress_of_the_flow_up_to_the_inlet(weir: Results) -> None:

@@ -1,19 +1,21 @@
 """Feeds and exits: every grain is counted, times are exact, nothing overlaps, the same bits after a stop."""
 
 import math
+import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
 from ryusa.build import scene as scene_of
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
-from ryusa.errors import CaseError, CheckpointError
-from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic, with_momentum
+from ryusa.errors import CaseError, CheckpointError, ResultsError
+from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results
 from ryusa.results.scene_file import scene_digest
@@ -247,13 +249,13 @@ def test_a_grain_reaches_rest_only_after_the_last_has_entered(tmp_path: Path) ->
     assert 0.7 < results.frames.t[-1] < 20.0
 
 
-def test_passages_of_an_earlier_version_are_read_without_a_momentum() -> None:
+def test_passages_of_a_version_without_their_momentum_are_refused(whole: Results, tmp_path: Path) -> None:
     earlier = np.dtype([(name, PASSAGE.fields[name][0]) for name in PASSAGE.names if name != "momentum"])
-    rows = np.zeros(3, earlier)
-    rows["grain"], rows["v"] = (4, 5, 6), 0.5
-    found = with_momentum(rows)
-    assert found.dtype == PASSAGE
-    assert found["grain"].tolist() == [4, 5, 6]
-    assert (found["v"] == 0.5).all()
-    assert np.isnan(found["momentum"]).all()
-    assert with_momentum(found) is found
+    shutil.copytree(whole.folder, tmp_path / "old")
+    for path in (tmp_path / "old" / "parts").glob("part-*.h5"):
+        with h5py.File(path, "r+") as file:
+            n = len(file["passages"])
+            del file["passages"]
+            file["passages"] = np.zeros(n, earlier)
+    with pytest.raises(ResultsError, match="'passages' has other columns: another version of ryusa wrote it"):
+        _ = Results.open(tmp_path / "old").passages

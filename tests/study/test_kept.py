@@ -1,4 +1,4 @@
-"""Ledger files: whole, compressed, and of the format before."""
+"""Ledger files: whole, compressed, of another format, and judged by newer bands."""
 
 import json
 
@@ -17,78 +17,7 @@ def test_a_ledger_is_read_as_it_was_written(tmp_path, name):
     assert read_ledger(write_ledger(tmp_path / "deep" / name, PLAIN)) == PLAIN
 
 
-def test_a_ledger_of_claims_of_format_1_is_read(tmp_path):
-    trial = {"part": "length", "choices": {}, "value": 1.0, "outcome": "holds"}
-    claim = {"id": "fig4", "verdict": "reproduced", "sweep": [trial], "experiment": "fig04", "spread": []}
-    path = tmp_path / "old.json"
-    path.write_text(json.dumps({"format": 1, "level": "full", "claims": [claim]}), encoding="utf-8")
-    (one,) = read_ledger(path)["findings"]
-    assert (one["part"], one["outcome"], one["trials"]) == ("fig04", "holds", [trial])
-    assert (one["robustness"]["holds"], one["robustness"]["of"], one["readings"]) == (1, 1, [])
-
-
-def of_format_2(held, **more):
-    """A ledger of format 2 with one finding; its trials are of two readings."""
-    trials = [
-        {"part": "n", "choices": {"run": str(run), "pair": pair}, "value": 1.0, "outcome": outcome}
-        for run, outcomes in enumerate(held)
-        for pair, outcome in zip(("all", "free"), outcomes, strict=True)
-    ]
-    factor = {"choice": "pair", "holds_at": ["all"], "p": 0.01, "confirmed": 0.02, "halves_of": "seeds"}
-    one = {
-        "id": "one", "outcome": "holds only if", "verdict": "reproduced only if",
-        "base_verdict": "reproduced", "condition": "pair all (9 of 9 settings, none of 4 others)",
-        "trials": trials, "readings": ["pair"],
-        "robustness": {"holds": 4, "of": 4, "undecided": 1, "low": 0.5, "high": 1.0},
-        "deciding_factor": {**factor, "there": [9, 9], "elsewhere": [0, 4]}, "contradiction": "", **more,
-    }  # fmt: skip
-    return {"format": 2, "study": "mine", "findings": [one]}
-
-
-def test_settings_of_a_ledger_of_format_2_are_counted_anew(tmp_path):
-    held = [("undecided", "fails"), *[("holds", "fails")] * 4, ("fails", "undecided")]
-    path = write_ledger(tmp_path / "old.json", of_format_2(held))
-    before = path.read_bytes()
-    (one,) = read_ledger(path)["findings"]
-    assert (one["outcome"], one["base_outcome"], one["condition"]) == ("undecided", "undecided", "")
-    share = one["robustness"]
-    assert (share["holds"], share["of"], share["undecided"]) == (4, 6, 1)
-    assert one["deciding_factor"]["words"] == (
-        "pair all (4 of 6 settings, 1 undecided; none of 6 read otherwise, 1 undecided)"
-    )
-    assert path.read_bytes() == before
-
-
-def test_a_condition_of_format_2_stays_where_its_settings_show_it(tmp_path):
-    path = write_ledger(tmp_path / "old.json", of_format_2([("holds", "fails")] * 5))
-    (one,) = read_ledger(path)["findings"]
-    assert one["outcome"] == "holds only if"
-    assert one["condition"] == "pair all (5 of 5 settings, none of 5 read otherwise)"
-    shown = of_format_2([("holds", "fails")], outcome="excluded by its own equations", deciding_factor=None)
-    (one,) = read_ledger(write_ledger(tmp_path / "new.json", shown))["findings"]
-    assert one["outcome"] == one["base_outcome"] == "excluded by its own equations"
-
-
-def test_a_ledger_of_comparisons_of_format_1_is_read(tmp_path):
-    error = {"name": "rms", "value": 0.2, "unit": "m", "low": 0.0, "high": 0.1, "why": "a cell"}
-    error["within"] = False
-    row = {
-        "id": "a/b", "check": "a", "verdict": "missed", "title": "A", "source": "s", "known": "closed form",
-        "settings": {}, "problem": "", "errors": [error], "said": "why", "axes": ["x", "y"], "ours": [],
-        "references": [], "beside": [], "picture": "pictures/a-b.png",
-    }  # fmt: skip
-    path = tmp_path / "old.json"
-    path.write_text(json.dumps({"format": 1, "level": "full", "comparisons": [row]}), encoding="utf-8")
-    (one,) = read_ledger(path)["findings"]
-    assert (one["part"], one["outcome"], one["decided_by"]) == ("a", "fails", "why")
-    assert one["trials"][0]["asked"] == {"low": 0.0, "high": 0.1, "unit": "m", "says": "a cell"}
-    assert one["pictures"] == ["pictures/a-b.png"]
-
-
-def test_a_kept_ledger_is_judged_by_a_band_that_is_newer_than_it(tmp_path):
-    """The numbers stay; verdict, settings and words are those of the entry in force, the first is beside."""
-    (tmp_path / "r.toml").write_text(
-        """
+REGISTERED = """
 [[claim]]
 id = "one"
   [[claim.band]]
@@ -104,31 +33,97 @@ id = "one"
   reason = "narrow"
   date = 2026-01-03
   change = "the first cannot fail"
-""",
-        encoding="utf-8",
-    )
+"""
+VALUES = {"holds": 0.5, "undecided": 1.0, "fails": 1.5}  # by what the narrow band says of them, +- 0.1
+BY_WIDE = {"part": "n", "unit": "-", "asked": {"low": None, "high": 2.0, "unit": "-", "says": "wide"}}
+
+
+def trial(outcome, **choices):
+    """One number, with its outcome by the wide band, which holds all."""
+    value = VALUES[outcome]
+    ends = {"value": value, "low": value - 0.1, "high": value + 0.1}
+    return {**BY_WIDE, **ends, "choices": choices, "outcome": "holds", "note": ""}
+
+
+def judged_anew(folder, trials, **more):
+    """A finding that the wide band judged, by the narrow one."""
+    (folder / "r.toml").write_text(REGISTERED, encoding="utf-8")
 
     class Mine(Study):
         """A study with a registration."""
 
-        registration = Registration.read(tmp_path / "r.toml")
+        registration = Registration.read(folder / "r.toml")
 
         def part(self, name):
             raise NotImplementedError(name)
 
-    asked = {"low": None, "high": 2.0, "unit": "-", "says": "wide"}
-    number = {"part": "n", "choices": {}, "unit": "-", "asked": asked, "outcome": "holds", "note": ""}
-    trials = [{**number, "value": 1.5, "low": 1.4, "high": 1.6}]
-    entry = {**PLAIN["findings"][0], "outcome": "holds", "base_outcome": "holds", "trials": trials}
-    old = {**PLAIN, "findings": [{**entry, "beside": [], "condition": "", "readings": []}]}
-    (one,) = as_registered(Mine(), old)["findings"]
+    entry = {
+        **PLAIN["findings"][0], "outcome": "holds", "base_outcome": "holds", "trials": trials, "beside": [],
+        "condition": "", "readings": [], "deciding_factor": None, "contradiction": "", **more,
+    }  # fmt: skip
+    before = json.dumps(entry)
+    (one,) = as_registered(Mine(), {**PLAIN, "findings": [entry]})["findings"]
+    assert json.dumps(entry) == before
+    return one
+
+
+def of_two_readings(folder, held, **more):
+    """A finding whose trials are of two readings, anew."""
+    trials = [
+        trial(outcome, run=str(run), pair=pair)
+        for run, outcomes in enumerate(held)
+        for pair, outcome in zip(("all", "free"), outcomes, strict=True)
+    ]
+    factor = {"choice": "pair", "holds_at": ["all"], "p": 0.01, "confirmed": 0.02, "halves_of": "seeds"}
+    said = {
+        "outcome": "holds only if", "condition": "pair all (9 of 9 settings, none of 4 others)",
+        "readings": ["pair"], "robustness": {"holds": 4, "of": 4, "undecided": 1, "low": 0.5, "high": 1.0},
+        "deciding_factor": {**factor, "there": [9, 9], "elsewhere": [0, 4]},
+    }  # fmt: skip
+    return judged_anew(folder, trials, **{**said, **more})
+
+
+def test_settings_of_a_finding_are_counted_anew_with_its_band(tmp_path):
+    held = [("undecided", "fails"), *[("holds", "fails")] * 4, ("fails", "undecided")]
+    one = of_two_readings(tmp_path, held)
+    assert (one["outcome"], one["base_outcome"], one["condition"]) == ("undecided", "undecided", "")
+    share = one["robustness"]
+    assert (share["holds"], share["of"], share["undecided"]) == (4, 6, 1)
+    assert one["deciding_factor"]["words"] == (
+        "pair all (4 of 6 settings, 1 undecided; none of 6 read otherwise, 1 undecided)"
+    )
+
+
+def test_a_condition_stays_where_the_settings_show_it_by_the_new_band(tmp_path):
+    one = of_two_readings(tmp_path, [("holds", "fails")] * 5)
+    assert one["outcome"] == "holds only if"
+    assert one["condition"] == "pair all (5 of 5 settings, none of 5 read otherwise)"
+    excluded = {"outcome": "excluded by its own equations", "deciding_factor": None}
+    one = of_two_readings(tmp_path, [("holds", "fails")], **excluded)
+    assert one["outcome"] == one["base_outcome"] == "excluded by its own equations"
+
+
+def test_one_number_of_a_finding_is_counted_as_its_only_setting(tmp_path):
+    one = judged_anew(tmp_path, [trial("holds")])
+    assert (one["robustness"]["holds"], one["robustness"]["of"], one["readings"]) == (1, 1, [])
+
+
+def test_a_kept_ledger_is_judged_by_a_band_that_is_newer_than_it(tmp_path):
+    """The numbers stay; verdict, settings and words are those of the entry in force, the first is beside."""
+    one = judged_anew(tmp_path, [trial("fails")])
     assert (one["outcome"], one["verdict"]) == ("fails", "fails; holds as first registered")
     assert one["trials"][0]["asked"] == {"low": None, "high": 1.0, "unit": "-", "says": "narrow"}
     assert (one["robustness"]["holds"], one["robustness"]["of"]) == (0, 1)
-    assert old["findings"][0]["trials"][0]["outcome"] == "holds"
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"format": 99}', '{"findings": []}'])
+@pytest.mark.parametrize("form", [1, 2, 99])
+def test_a_ledger_of_another_format_is_refused_with_both_formats(tmp_path, form):
+    path = write_ledger(tmp_path / "ledger.json", {**PLAIN, "format": form})
+    with pytest.raises(ResultsError, match=f"a ledger in format {form}, of another version; .* reads 3$"):
+        read_ledger(path)
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"format": "1"}', '{"findings": []}'])
 def test_a_file_that_is_not_a_ledger_is_refused(tmp_path, text):
     path = tmp_path / "ledger.json"
     path.write_text(text, encoding="utf-8")

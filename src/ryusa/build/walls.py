@@ -19,6 +19,7 @@ from ryusa.casefile.walls import WallSection
 from ryusa.errors import CaseError
 from ryusa.formats.mesh import MOST_TRIANGLES
 from ryusa.model import FaceKind, Scene, Walls
+from ryusa.model.groups import groups
 from ryusa.model.scene import Floats
 from ryusa.model.wall_shape import nearest_on_face
 from ryusa.model.walls import (
@@ -180,13 +181,8 @@ def surfaces(face: Floats, kind: Ints, period: tuple[float, float] = (math.inf, 
     >>> surfaces(flat.face, flat.kind).tolist()
     [0, 0]
     """
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
     flat = np.flatnonzero(kind == FaceKind.TRIANGLE)
-    links = _smooth_links(face[flat], period)
-    graph = coo_matrix((np.ones(len(links)), (flat[links[:, 0]], flat[links[:, 1]])), shape=(len(kind),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+    return groups(flat[_smooth_links(face[flat], period)], len(kind))
 
 
 def _smooth_links(face: Floats, period: tuple[float, float]) -> Ints:

@@ -52,7 +52,7 @@ class Mesh:
     @cached_property
     def flipped_sides(self) -> int:
         """Sides at which the normals of two triangles point to different sides of the mesh."""
-        return flipped_sides(self.corners)
+        return flipped_sides(welded(self.corners))
 
 
 def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:

@@ -239,7 +239,6 @@ def resume(
     with catch_signals() as signal, registry.leading(str(origin.get("engine"))) as leads:
         if not leads:
             return
-        from ryusa.casefile.earlier import kept_choices
         from ryusa.casefile.read import read
 
         if not (folder / schema.CASE_TOML).is_file():
@@ -248,8 +247,7 @@ def resume(
             )
         overrides, engine = origin.get("overrides"), origin.get("engine")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
-        kept = kept_choices(read_json(folder / schema.CASE_JSON, missing_ok=True))
-        found = read(folder / schema.CASE_TOML, kept | given | overrides_of(settings))
+        found = read(folder / schema.CASE_TOML, given | overrides_of(settings))
         from ryusa.running.runner import run as run_case
 
         signal.raise_if_stopped("before the first step; nothing was changed")

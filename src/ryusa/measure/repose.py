@@ -12,6 +12,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, scene_at, snapshot
 from ryusa.model import Scene
+from ryusa.model.groups import groups
 from ryusa.model.near_pairs import near_pairs
 from ryusa.printed import ByShape
 from ryusa.spelling import known_word
@@ -256,9 +257,6 @@ def _floor(scene: Scene, seen: Snapshot) -> float:
 
 def _heap(seen: Snapshot, scene: Scene, level: float, gap: float) -> NDArray[np.int64]:
     """Largest group of grains above the floor that touch, or nearly so; places in the snapshot."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     above = np.flatnonzero(seen.x[:, 2] > level)
     if len(above) < 2:
         return above
@@ -269,9 +267,7 @@ def _heap(seen: Snapshot, scene: Scene, level: float, gap: float) -> NDArray[np.
     away = x[pairs[:, 0]] - x[pairs[:, 1]]
     away -= period * np.round(np.divide(away, period, out=np.zeros_like(away), where=period > 0.0))
     touch = np.linalg.norm(away, axis=1) - r[pairs].sum(axis=1) <= gap
-    i, j = pairs[touch].T
-    links = coo_array((np.ones(len(i)), (i, j)), shape=(len(above), len(above)))
-    _, group = connected_components(links, directed=False)
+    group = groups(pairs[touch], len(above))
     return above[group == np.bincount(group).argmax()]
 
 

@@ -13,6 +13,7 @@ from ryusa.measure.statistics import Average, ratio
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
+from ryusa.model.groups import groups
 from ryusa.model.near_pairs import near_pairs
 from ryusa.model.scene import Bools
 from ryusa.printed import ByShape
@@ -286,11 +287,7 @@ def _clusters(pairs: Ints, n: int) -> Iterator[Ints]:
     """Give the grains of every cluster of bound pairs among n grains."""
     if not len(pairs):
         return
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, label = connected_components(links, directed=False)
+    label = groups(pairs, n)
     for one in np.unique(label[pairs[:, 0]]):
         yield np.flatnonzero(label == one)
 

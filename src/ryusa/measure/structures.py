@@ -14,7 +14,7 @@ from ryusa.model.arrays import Bools
 from ryusa.model.row import RowDam
 from ryusa.model.wall_shape import in_world, triangles_of
 from ryusa.model.walls import Walls
-from ryusa.model.welding import flipped_sides, rims
+from ryusa.model.welding import flipped_sides, rims, welded
 from ryusa.results.row import RowFrames
 
 ROUND, SAME = 10.0, 1.0e-6  # heights of a dam that a mesh round it may be longer; share of its size
@@ -73,7 +73,7 @@ def structures_of(run: Run, t: float) -> tuple[list[Structure], list[str]]:
     for name in shapes:
         if name in around:
             continue
-        mesh = name in meshes and not flipped_sides(corners[name])
+        mesh = name in meshes and not flipped_sides(welded(corners[name]))
         if name in meshes and not mesh:
             said.append(f"no water on {name}: its triangles are flipped against each other, so that they "
                         "have no outer side; mend the mesh")  # fmt: skip

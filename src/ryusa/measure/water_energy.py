@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.long_section import row_of
 from ryusa.model.row_energy import CHANGES, ROW_GIFTS, ROW_LOSSES, RowTerm, row_imbalance
@@ -79,22 +78,14 @@ class WaterEnergy(ByShape):
 def water_energy(run: Run) -> WaterEnergy:
     """Energy account of the water in a row of columns, as its steps summed it.
 
-    Frames of versions that kept no account are left out; after a resume from a checkpoint of such a version
-    it counts from there.
-
     Raises
     ------
-    ResultsError : the run has no row of columns, or none of its frames has the account.
+    ResultsError : the run has no row of columns.
     """
     found = row_of(run)
-    kept = ~np.isnan(found.energy).any(axis=1)
-    if not kept.any():
-        raise ResultsError("this run is of a version that kept no account of the energy of its water")
-    account = found.energy[kept]
+    account = found.energy
 
     def named(terms: tuple[RowTerm, ...]) -> dict[str, Floats]:
         return {term.name.lower(): account[:, term] for term in terms}
 
-    return WaterEnergy(
-        found.t[kept], named(CHANGES), named(ROW_LOSSES), named(ROW_GIFTS), row_imbalance(account)
-    )
+    return WaterEnergy(found.t, named(CHANGES), named(ROW_LOSSES), named(ROW_GIFTS), row_imbalance(account))

@@ -9,7 +9,7 @@ from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
-from ryusa.model.traffic import PASSAGE, Arrivals, Exit, Feed, Traffic, with_momentum
+from ryusa.model.traffic import PASSAGE, Arrivals, Exit, Feed, Traffic
 from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [
@@ -42,5 +42,4 @@ __all__ = [
     "Walls",
     "Water",
     "WaterState",
-    "with_momentum",
 ]

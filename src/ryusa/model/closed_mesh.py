@@ -1,5 +1,6 @@
 """A body bounded by a mesh of triangles: whether it is closed, its volume and inertia, what is inside."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -7,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.model.arrays import Floats
+from ryusa.model.groups import groups
+from ryusa.model.walls import Ints
+from ryusa.model.welding import flipped_sides, sides_of, welded
 
-Ints = NDArray[np.int64]
 MOST_TRIANGLES = 100_000
 CELLS = 61  # of a grid over the longest side; odd, so that a symmetrical body has a cell at its middle
-_ALIKE = 1.0e-9  # corners nearer than this share of the size are one
-# Columns of the grid stand beside the middles of its cells by this share of a cell, so as to meet no edge.
-_ASIDE = (1.37e-4, 2.71e-4)
+_AT_ONCE = 1_000_000  # pairs of a triangle and a cell
+# Rays stand beside the middles of columns by these shares of a cell, so as to meet no edge.
+_ASIDE = ((1.37e-4, 2.71e-4), (-2.23e-4, 1.19e-4), (3.07e-4, -1.61e-4), (-0.83e-4, -3.41e-4))
 
 
 class MeshFault(ValueError):
@@ -54,7 +57,7 @@ class ClosedMesh:
         ...
         ryusa.model.closed_mesh.MeshFault: has 1 triangles; a body has 4 to 100,000
         """
-        number = _numbered(corners)
+        number = welded(corners)
         apart = (number != np.roll(number, 1, axis=1)).all(axis=1)
         corners, number = corners[apart], number[apart]
         if not 4 <= len(corners) <= MOST_TRIANGLES:
@@ -107,10 +110,8 @@ class ClosedMesh:
         side = float((high - low).max()) / cells
         shape = np.maximum(np.round((high - low) / side).astype(np.int64) // 2 * 2 + 1, 1)
         origin = 0.5 * (low + high) - 0.5 * side * (shape - 1)
-        turns = np.zeros((*shape[:2], shape[2] + 1), np.int64)  # of the surface about each middle
-        for columns, above, sign in _crossings((self.corners - origin) / side, shape):
-            np.add.at(turns, (columns[:, 0], columns[:, 1], above), sign)
-        turns = np.cumsum(turns, axis=2)[:, :, :-1]
+        n_x, n_y, n_z = shape.tolist()
+        turns = turns_about((self.corners - origin) / side, (n_x, n_y, n_z)).transpose(2, 1, 0)
         if ((turns != 0) & (turns != 1)).any():
             raise MeshFault("passes through itself; unite its parts into one surface")
         return origin, side, turns == 1
@@ -121,67 +122,97 @@ class ClosedMesh:
         return float(np.sqrt(square_distances(x, a, b, c).min()))
 
 
-def _numbered(corners: Floats) -> Ints:
-    """Number of the point at each corner, shape (n, 3); corners that are alike have one number."""
-    size = max(float(np.ptp(corners.reshape(-1, 3), axis=0).max()), 1.0e-300)
-    rounded = np.round((corners.reshape(-1, 3) - corners.min(axis=(0, 1))) / (_ALIKE * size))
-    return np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1, 3)
-
-
 def _check_sides(number: Ints) -> None:
     """Refuse triangles that are not one closed surface whose triangles all turn the same way."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    sides = np.concatenate([number[:, [k, (k + 1) % 3]] for k in range(3)])
-    _, key, times = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-    key = key.reshape(-1)
+    sides, n = sides_of(number), len(number)
+    times = np.unique(sides, return_counts=True)[1]
     if alone := int((times == 1).sum()):
         raise MeshFault(f"is not closed: {alone} sides of triangles have no other beside them")
     if many := int((times > 2).sum()):
         raise MeshFault(f"is not one surface: {many} sides belong to more than two triangles")
-    along = np.zeros(len(times), np.int64)
-    np.add.at(along, key, np.where(sides[:, 0] < sides[:, 1], 1, -1))
-    if flipped := int((along != 0).sum()):
+    if flipped := flipped_sides(number):
         raise MeshFault(f"has flipped triangles: at {flipped} sides two turn against each other")
-    n = len(number)
-    order = np.argsort(key, kind="stable").reshape(-1, 2) % n  # the two triangles at each side
-    graph = coo_matrix((np.ones(len(order)), (order[:, 0], order[:, 1])), shape=(n, n))
-    pieces = connected_components(graph, directed=False)[0]
+    beside = np.argsort(sides, kind="stable").reshape(-1, 2) % n  # the two triangles at each side
+    pieces = int(groups(beside, n).max()) + 1
     if pieces > 1:
         raise MeshFault(f"consists of {pieces} separate surfaces; a clump is one body without cavities")
 
 
-def _crossings(corners: Floats, shape: Ints) -> list[tuple[Ints, Ints, int]]:
-    """Where columns of cells meet triangles: columns (k, 2), first cell above (k,), and 1 where they enter.
+def turns_about(corners: Floats, shape: tuple[int, int, int]) -> Ints:
+    """How often a surface goes round the middle of each cell of a grid, shape (n_z, n_y, n_x).
 
     Parameters
     ----------
     corners : in cells from the middle of the first, shape (n, 3, 3).
+    shape : cells along x, y and z.
+
+    Raises
+    ------
+    MeshFault : as `crossings`.
+
+    Notes
+    -----
+    The number is that of crossings below, each by its direction: 0 outside and 1 inside a body whose normals
+    point outwards; odd in what is enclosed, whatever the order of the corners. By chance on the surface.
     """
-    found: list[tuple[Ints, Ints, int]] = []
-    aside = np.array(_ASIDE)
-    flat = corners[:, :, :2] - aside
-    low = np.maximum(np.ceil(flat.min(axis=1)), 0).astype(np.int64)
-    high = np.minimum(np.floor(flat.max(axis=1)), shape[:2] - 1).astype(np.int64)
-    for k in np.flatnonzero((low <= high).all(axis=1)).tolist():
-        a, b, c = flat[k]
-        area = float((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
-        if area == 0.0:
-            continue
-        columns = np.stack(
-            np.meshgrid(*(np.arange(low[k, s], high[k, s] + 1) for s in (0, 1)), indexing="ij"), axis=-1
-        ).reshape(-1, 2)
-        p = columns - a
-        v = (p[:, 0] * (c - a)[1] - p[:, 1] * (c - a)[0]) / area
-        w = ((b - a)[0] * p[:, 1] - (b - a)[1] * p[:, 0]) / area
-        hit = (v >= 0.0) & (w >= 0.0) & (v + w <= 1.0)
-        if hit.any():
-            z = corners[k, :, 2]
-            height = z[0] + v[hit] * (z[1] - z[0]) + w[hit] * (z[2] - z[0])
-            above = np.clip(np.floor(height).astype(np.int64) + 1, 0, shape[2])
-            found.append((columns[hit], above, -1 if area > 0.0 else 1))
-    return found
+    n_x, n_y, n_z = shape
+    column, height, turn = crossings(corners, (n_x, n_y))
+    turns = np.zeros((n_z + 1, n_y * n_x), np.int64)
+    np.add.at(turns, (np.clip(np.floor(height).astype(np.int64) + 1, 0, n_z), column), turn)
+    return np.cumsum(turns, axis=0)[:-1].reshape(n_z, n_y, n_x)
+
+
+def crossings(corners: Floats, shape: tuple[int, int]) -> tuple[Ints, Floats, Ints]:
+    """Where rays along z through the middles of columns cross triangles: column, height, and 1 upon entering.
+
+    Parameters
+    ----------
+    corners : shape (n, 3, 3), x and y in columns from the middle of the first.
+
+    Returns
+    -------
+    Number of the column, y n_x + x, height, and 1 where the normal points down, -1 where up, shapes (k,).
+
+    Raises
+    ------
+    MeshFault : a ray crosses an odd number of times, wherever it stands.
+    """
+    for aside in _ASIDE:
+        flat, z = corners[:, :, :2] - np.array(aside), corners[:, :, 2]
+        b, c = (flat[:, k] - flat[:, 0] for k in (1, 2))
+        area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
+        flat, z, b, c, area = (one[area != 0.0] for one in (flat, z, b, c, area))  # not seen edge on
+        columns, heights, turns = list[Ints](), list[Floats](), list[Ints]()
+        for owner, place in near(flat.min(axis=1), flat.max(axis=1), shape):
+            p, one, other = place - flat[owner, 0], b[owner], c[owner]
+            v = (p[:, 0] * other[:, 1] - p[:, 1] * other[:, 0]) / area[owner]
+            w = (one[:, 0] * p[:, 1] - one[:, 1] * p[:, 0]) / area[owner]
+            hit = (v >= 0.0) & (w >= 0.0) & (v + w <= 1.0)
+            base, up, side = z[owner[hit]].T
+            columns.append(place[hit, 1] * shape[0] + place[hit, 0])
+            heights.append(base + v[hit] * (up - base) + w[hit] * (side - base))
+            turns.append(np.where(area[owner[hit]] > 0.0, -1, 1))
+        column, turn = (np.concatenate([np.zeros(0, np.int64), *one]) for one in (columns, turns))
+        if not (np.bincount(column) % 2).any():
+            return column, np.concatenate([np.zeros(0), *heights]), turn
+    raise MeshFault("is not closed, as far as rays through it show")
+
+
+def near(low: Floats, high: Floats, shape: tuple[int, ...]) -> Iterator[tuple[Ints, Ints]]:
+    """Whole places of a grid in boxes, some boxes at a time: number of the box (n,), and place (n, axes)."""
+    first = np.maximum(np.ceil(low), 0).astype(np.int64)
+    last = np.minimum(np.floor(high), np.array(shape) - 1).astype(np.int64)
+    many = np.maximum(last - first + 1, 0)
+    total = many.prod(axis=1)
+    used = np.flatnonzero(total)
+    begun = np.cumsum(total[used]) // _AT_ONCE
+    for some in np.split(used, np.flatnonzero(np.diff(begun)) + 1):
+        owner = np.repeat(some, total[some])
+        rest = np.arange(len(owner)) - np.repeat(np.cumsum(total[some]) - total[some], total[some])
+        place = np.empty((len(owner), len(shape)), np.int64)
+        for axis in range(len(shape)):
+            rest, place[:, axis] = np.divmod(rest, many[owner, axis])
+        yield owner, first[owner] + place
 
 
 def square_distances(x: Floats, a: Floats, b: Floats, c: Floats) -> Floats:

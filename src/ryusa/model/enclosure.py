@@ -1,7 +1,6 @@
 """The inside of a mesh or a cylinder: its volume, and which cubes of a grid, and spheres, lie in it."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, Self
@@ -9,18 +8,15 @@ from typing import Protocol, Self
 import numpy as np
 
 from ryusa.model.arrays import Bools, Floats
-from ryusa.model.closed_mesh import MeshFault, square_distances
+from ryusa.model.closed_mesh import MeshFault, crossings, near, square_distances, turns_about
 from ryusa.model.walls import Ints, corners_of_box
-from ryusa.model.welding import sides_of, welded
+from ryusa.model.welding import open_sides
 
 FLAT = 1.0e-3  # of the width of an opening, by which its rim may leave a plane
 ROUND_OFF = 1.0e-6  # of the side of a cube, as meshes have corners of single precision
 _LONG = 4.0  # sides of a cube: longer triangles are halved, so that few cubes are near each
 _COLUMNS = 256  # along x and y, by which the volume is found
 _LEAST = 1.0e-9  # of the cube of its size: less volume is none
-_AT_ONCE = 1_000_000  # pairs of a triangle and a cube
-# Rays stand beside the middles of the cubes by these shares of a side, so as to meet no edge.
-_ASIDE = ((1.37e-4, 2.71e-4), (-2.23e-4, 1.19e-4), (3.07e-4, -1.61e-4), (-0.83e-4, -3.41e-4))
 
 
 @dataclass(frozen=True)
@@ -184,7 +180,7 @@ class MeshInside:
         wide = np.maximum((self.high - self.low)[:2], 1.0e-300) / _COLUMNS
         in_columns = self.corners.copy()
         in_columns[:, :, :2] = (in_columns[:, :, :2] - self.low[:2]) / wide - 0.5
-        column, z = _crossings(in_columns, (_COLUMNS, _COLUMNS))
+        column, z, _ = crossings(in_columns, (_COLUMNS, _COLUMNS))
         column, z = (one[np.lexsort((z, column))] for one in (column, z))
         return float((z[1::2] - z[::2]).sum() * wide.prod())  # an even number in each column
 
@@ -192,7 +188,7 @@ class MeshInside:
         """Distance from the middle of each cube to the surface [m], `reach` at most; 0 outside."""
         pieces, away = self._pieces(grid), np.full(grid.n, reach / grid.side)
         far, (a, b, c) = reach / grid.side, pieces.transpose(1, 0, 2)
-        for owner, place in _near(pieces.min(axis=1) - far, pieces.max(axis=1) + far, grid.shape):
+        for owner, place in near(pieces.min(axis=1) - far, pieces.max(axis=1) + far, grid.shape):
             square = square_distances(place.astype(np.float64), a[owner], b[owner], c[owner])
             np.minimum.at(away, _number(place, grid), np.sqrt(square))
         return np.where(self._inside(grid), away * grid.side, 0.0)
@@ -201,7 +197,7 @@ class MeshInside:
         """Whether each cube lies inside as a whole."""
         pieces, found = self._pieces(grid), self._inside(grid)
         half, (a, b, c) = 0.5 * (1.0 - ROUND_OFF), pieces.transpose(1, 0, 2)
-        for owner, place in _near(pieces.min(axis=1) - half, pieces.max(axis=1) + half, grid.shape):
+        for owner, place in near(pieces.min(axis=1) - half, pieces.max(axis=1) + half, grid.shape):
             met = _meet_cube(half, a[owner] - place, b[owner] - place, c[owner] - place)
             found[_number(place[met], grid)] = False
         return found
@@ -225,12 +221,7 @@ class MeshInside:
 
     def _inside(self, grid: Grid) -> Bools:
         """Whether the middle of each cube is inside; by chance where it is on the surface."""
-        n_x, n_y, n_z = grid.shape
-        column, z = _crossings(self._in_cubes(grid), (n_x, n_y))
-        above = np.clip(np.floor(z).astype(np.int64) + 1, 0, n_z)
-        crossed = np.zeros((n_z + 1, n_x * n_y), np.int64)
-        np.add.at(crossed, (above, column), 1)
-        return (np.cumsum(crossed, axis=0)[:-1] % 2 == 1).ravel()
+        return (turns_about(self._in_cubes(grid), grid.shape) % 2 == 1).ravel()
 
 
 def _lids(corners: Floats) -> tuple[Floats, int]:
@@ -238,25 +229,14 @@ def _lids(corners: Floats) -> tuple[Floats, int]:
 
     They go round the mean of each rim; where a rim is hollow they cover the place beside it twice, or not.
     """
-    number = welded(corners)
-    _, first, times = np.unique(sides_of(number), return_index=True, return_counts=True)
+    points, rim, times = open_sides(corners)
     if odd := int(((times > 1) & (times % 2 == 1)).sum()):
         raise MeshFault(
             f"does not say what is inside: at {odd} sides three or more triangles meet, as at a partition"
         )
-    alone = first[times == 1]
-    if not len(alone):
+    if not len(points):
         return np.zeros((0, 3, 3)), 0
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    triangle, k = alone % len(corners), alone // len(corners)
-    ends = np.stack([number[triangle, k], number[triangle, (k + 1) % 3]], axis=1)
-    points = np.stack([corners[triangle, k], corners[triangle, (k + 1) % 3]], axis=1)
-    at = np.unique(ends, return_inverse=True)[1].reshape(-1, 2)
-    n = int(at.max()) + 1
-    n_rim, of = connected_components(coo_matrix((np.ones(len(at)), (at[:, 0], at[:, 1])), shape=(n, n)))
-    rim, found = of[at[:, 0]], list[Floats]()
+    n_rim, found = int(rim.max()) + 1, list[Floats]()
     for one in range(n_rim):
         sides = points[rim == one]
         middle = sides.mean(axis=(0, 1))
@@ -270,54 +250,6 @@ def _lids(corners: Floats) -> tuple[Floats, int]:
         lid = np.broadcast_to(middle, (len(sides), 1, 3))
         found.append(np.concatenate([sides, lid], axis=1))
     return np.concatenate(found), n_rim
-
-
-def _crossings(corners: Floats, shape: tuple[int, int]) -> tuple[Ints, Floats]:
-    """Where rays along z through the middles of columns cross triangles: number of the column, and height.
-
-    Parameters
-    ----------
-    corners : shape (n, 3, 3), x and y in columns from the middle of the first.
-
-    Raises
-    ------
-    MeshFault : a ray crosses an odd number of times, wherever it stands.
-    """
-    for aside in _ASIDE:
-        flat, z = corners[:, :, :2] - np.array(aside), corners[:, :, 2]
-        b, c = (flat[:, k] - flat[:, 0] for k in (1, 2))
-        area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
-        flat, z, b, c, area = (one[area != 0.0] for one in (flat, z, b, c, area))  # not seen edge on
-        columns, heights = list[Ints](), list[Floats]()
-        for owner, place in _near(flat.min(axis=1), flat.max(axis=1), shape):
-            p, one, other = place - flat[owner, 0], b[owner], c[owner]
-            v = (p[:, 0] * other[:, 1] - p[:, 1] * other[:, 0]) / area[owner]
-            w = (one[:, 0] * p[:, 1] - one[:, 1] * p[:, 0]) / area[owner]
-            hit = (v >= 0.0) & (w >= 0.0) & (v + w <= 1.0)
-            base, up, side = z[owner[hit]].T
-            columns.append(place[hit, 1] * shape[0] + place[hit, 0])
-            heights.append(base + v[hit] * (up - base) + w[hit] * (side - base))
-        column = np.concatenate([np.zeros(0, np.int64), *columns])
-        if not (np.bincount(column) % 2).any():
-            return column, np.concatenate([np.zeros(0), *heights])
-    raise MeshFault("is not closed, as far as rays through it show")
-
-
-def _near(low: Floats, high: Floats, shape: tuple[int, ...]) -> Iterator[tuple[Ints, Ints]]:
-    """Whole places of a grid in boxes, some boxes at a time: number of the box (n,), and place (n, axes)."""
-    first = np.maximum(np.ceil(low), 0).astype(np.int64)
-    last = np.minimum(np.floor(high), np.array(shape) - 1).astype(np.int64)
-    many = np.maximum(last - first + 1, 0)
-    total = many.prod(axis=1)
-    used = np.flatnonzero(total)
-    begun = np.cumsum(total[used]) // _AT_ONCE
-    for some in np.split(used, np.flatnonzero(np.diff(begun)) + 1):
-        owner = np.repeat(some, total[some])
-        rest = np.arange(len(owner)) - np.repeat(np.cumsum(total[some]) - total[some], total[some])
-        place = np.empty((len(owner), len(shape)), np.int64)
-        for axis in range(len(shape)):
-            rest, place[:, axis] = np.divmod(rest, many[owner, axis])
-        yield owner, first[owner] + place
 
 
 def _number(place: Ints, grid: Grid) -> Ints:

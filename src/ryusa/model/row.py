@@ -292,7 +292,7 @@ class RowState(ByShape):
     profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
     edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
     budgets: Floats  # momentum budget, shape (n_station, N_OUT)
-    # energy account since the start [J/m], indexed by RowTerm; since the checkpoint of an earlier version
+    # energy account since the start [J/m], indexed by RowTerm
     energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done

@@ -39,18 +39,6 @@ PASSAGE = np.dtype(
 )
 
 
-def with_momentum(rows: NDArray[np.void]) -> NDArray[np.void]:
-    """Passages of dtype PASSAGE; those of earlier versions, without a momentum, get nan for it."""
-    earlier = [name for name in PASSAGE.names or () if name != "momentum"]
-    if list(rows.dtype.names or ()) != earlier:
-        return rows
-    found = np.zeros(len(rows), PASSAGE)
-    for name in earlier:
-        found[name] = rows[name]
-    found["momentum"] = NAN
-    return found
-
-
 @dataclass(frozen=True)
 class Feed:
     """A place where grains enter: a box, or a disc (in a plane scene a line) that they pass.

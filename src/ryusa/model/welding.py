@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ryusa.model.arrays import Floats
+from ryusa.model.groups import groups
 from ryusa.model.walls import Ints
 
 _WELD = 1e-9  # of the size of a mesh: nearer corners are one
@@ -45,15 +46,16 @@ def sides_of(number: Ints) -> Ints:
     return np.concatenate([np.minimum(a, b) * most + np.maximum(a, b) for a, b in pairs])
 
 
-def flipped_sides(corners: Floats) -> int:
+def flipped_sides(number: Ints) -> int:
     """Sides that two triangles share and both run in the same direction, so that their normals disagree.
 
-    >>> one = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    >>> other = np.array([[1.0, 0, 0], [1, 1, 0], [0, 1, 0]])
-    >>> flipped_sides(np.stack([one, other])), flipped_sides(np.stack([one, other[::-1]]))
+    Parameters
+    ----------
+    number : of the corners of each triangle, (n, 3).
+
+    >>> flipped_sides(np.array([[0, 1, 2], [1, 3, 2]])), flipped_sides(np.array([[0, 1, 2], [2, 3, 1]]))
     (0, 1)
     """
-    number = welded(corners)
     up = np.concatenate([number[:, k] < number[:, (k + 1) % 3] for k in range(3)])
     _, side, times = np.unique(sides_of(number), return_inverse=True, return_counts=True)
     rising = np.bincount(side.ravel(), weights=up, minlength=len(times))
@@ -68,6 +70,28 @@ def first_of_each(number: Ints) -> Ints:
     return np.sort(np.unique(pair * most + high, return_index=True)[1])
 
 
+def open_sides(corners: Floats) -> tuple[Floats, Ints, Ints]:
+    """Sides that one triangle has alone.
+
+    Returns
+    -------
+    points : ends of each [m], shape (k, 2, 3).
+    rim : number of the rim that it is part of, shape (k,).
+    times : how many triangles have each side, open or not.
+    """
+    number = welded(corners)
+    _, first, times = np.unique(sides_of(number), return_index=True, return_counts=True)
+    alone = first[times == 1]
+    if not len(alone):
+        return np.zeros((0, 2, 3)), np.zeros(0, np.int64), times
+    triangle, k = alone % len(corners), alone // len(corners)
+    after = (k + 1) % 3
+    points = np.stack([corners[triangle, k], corners[triangle, after]], axis=1)
+    ends = np.stack([number[triangle, k], number[triangle, after]], axis=1)
+    at = np.unique(ends, return_inverse=True)[1].reshape(-1, 2)
+    return points, groups(at, int(at.max()) + 1)[at[:, 0]], times
+
+
 def rims(corners: Floats) -> tuple[int, Floats, int]:
     """Open sides of triangles, how wide each rim of such sides is [m], and sides shared by more than two.
 
@@ -77,23 +101,9 @@ def rims(corners: Floats) -> tuple[int, Floats, int]:
     >>> single, [round(one, 3) for one in wide.tolist()], several
     (3, [1.414], 0)
     """
-    number = welded(corners)
-    _, first, times = np.unique(sides_of(number), return_index=True, return_counts=True)
-    alone = first[times == 1]
-    if not len(alone):
-        return 0, np.zeros(0), int((times > 2).sum())
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    n, triangle, k = len(corners), alone % len(corners), alone // len(corners)
-    ends = np.stack([number[triangle, k], number[triangle, (k + 1) % 3]], axis=1)
-    known, at = np.unique(ends, return_inverse=True)
-    at = at.reshape(-1, 2)
-    links = coo_matrix((np.ones(len(at)), (at[:, 0], at[:, 1])), shape=(len(known),) * 2)
-    n, of = connected_components(links, directed=False)
+    points, rim, times = open_sides(corners)
+    n = int(rim.max(initial=-1)) + 1
     low, high = np.full((n, 3), math.inf), np.full((n, 3), -math.inf)
-    for end in (0, 1):
-        points = corners[triangle, (k + end) % 3]
-        np.minimum.at(low, of[at[:, end]], points)
-        np.maximum.at(high, of[at[:, end]], points)
-    return len(alone), np.linalg.norm(high - low, axis=1), int((times > 2).sum())
+    np.minimum.at(low, rim, points.min(axis=1))
+    np.maximum.at(high, rim, points.max(axis=1))
+    return len(points), np.linalg.norm(high - low, axis=1), int((times > 2).sum())

@@ -94,10 +94,10 @@ def read_dataset(file: h5py.File, name: str, path: Path) -> np.ndarray:
     return plain_dataset(file, name, path)[()]
 
 
-def read_integer(file: h5py.File, name: str, path: Path) -> int | None:
-    """Read an integer attribute of the file; None if there is none."""
+def read_integer(file: h5py.File, name: str, path: Path) -> int:
+    """Read an integer attribute of the file."""
     if name not in file.attrs:
-        return None
+        raise ResultsError(f"{path}: has no '{name}'")
     kept = file.attrs.get_id(name)
     if kept.shape != () or kept.dtype.kind not in "iu":
         raise ResultsError(f"{path}: its '{name}' is not an integer")

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.model import EVENT, PASSAGE, with_momentum
-from ryusa.model.walls import TOUCHED
+from ryusa.model import EVENT, PASSAGE
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
 
@@ -29,7 +28,7 @@ class Part:
     step: NDArray[np.int64]
     n_contact: int
     files: OpenFiles  # shared by all parts of a run
-    end: int | None = None  # step up to which this and earlier parts are complete; None in old folders
+    end: int  # step up to which this and earlier parts are complete
     tail: bool = False  # holds contacts of an incomplete part, which a resumed run writes again
 
     @property
@@ -62,10 +61,8 @@ class Part:
         """Read a dataset of walls, schema.WALLS or schema.TRAVEL, (n_frame, *shape)."""
         with opened(self.path) as file:
             found = read_dataset(file, name, self.path)
-        if name == schema.WALLS and found.shape == (self.n_frame, shape[0], TOUCHED):  # of earlier versions
-            found = np.concatenate([found, np.full((self.n_frame, shape[0], 1), np.nan)], axis=2)
         if found.shape != (self.n_frame, *shape) or found.dtype != np.float64:
-            raise ResultsError(f"{self.path}: '{name}' does not match its frames")
+            raise ResultsError(f"{self.path}: '{name}' does not match its frames: {schema.FOREIGN}")
         return found
 
     def contacts(self) -> NDArray[np.void]:
@@ -76,15 +73,15 @@ class Part:
     def passages(self) -> NDArray[np.void]:
         """Read the grains that entered and left during this part, dtype PASSAGE."""
         with opened(self.path) as file:
-            rows = with_momentum(read_dataset(file, schema.PASSAGES, self.path))
+            rows = read_dataset(file, schema.PASSAGES, self.path)
             if rows.dtype != PASSAGE or rows.ndim != 1:
-                raise ResultsError(f"{self.path}: '{schema.PASSAGES}' has another layout")
+                raise ResultsError(f"{self.path}: '{schema.PASSAGES}' has other columns: {schema.FOREIGN}")
             return rows
 
     def tally(self) -> NDArray[np.void]:
         """Read the energy account at each frame of this part."""
         with opened(self.path) as file:
-            return schema.whole(read_dataset(file, "tally", self.path))
+            return read_dataset(file, "tally", self.path)
 
 
 class LazyFrames:
@@ -232,6 +229,8 @@ def read_frames(
         with opened(part.path) as file:
             for name, tail in shapes.items():
                 key, shape = f"{group}/{name}", (part.n_frame, *tail)
+                if key not in file:
+                    raise ResultsError(f"{part.path}: has no '{key}': {schema.FOREIGN}")
                 got = plain_dataset(file, key, part.path)
                 if got.shape != shape or got.dtype != np.float64:
                     raise ResultsError(

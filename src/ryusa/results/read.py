@@ -365,11 +365,10 @@ def read_part(path: Path, first: int, scene: Scene, files: OpenFiles) -> Part:
         for name, (dtype, tail) in schema.BODY_DATASETS.items() if n_body >= 0 else ():
             _check(plain_dataset(file, name, path), (k, n_body, *tail), dtype, path)
         tally = plain_dataset(file, "tally", path)
-        kinds = (schema.BEFORE_FILMS, schema.BEFORE_WALLS)
-        _check(tally, (k,), next((one for one in kinds if one == tally.dtype), schema.TALLY), path)
+        _check(tally, (k,), schema.TALLY, path)
         contacts = plain_dataset(file, "contacts", path)
         _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
-        end, tail = read_integer(file, schema.END_STEP, path), read_integer(file, schema.TAIL, path)
+        end, tail = (read_integer(file, name, path) for name in (schema.END_STEP, schema.TAIL))
         return Part(
             path=path, first=first, t=t, step=step, n_contact=len(contacts), files=files, end=end,
             tail=bool(tail),
@@ -378,6 +377,7 @@ def read_part(path: Path, first: int, scene: Scene, files: OpenFiles) -> Part:
 
 def _check(dataset: h5py.Dataset, shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None:
     if dataset.shape != shape or dataset.dtype != dtype:
-        raise ResultsError(
-            f"{path}: '{dataset.name}' is {dataset.shape} of {dataset.dtype}, expected {shape} of {dtype}"
-        )
+        said = f"is {dataset.shape} of {dataset.dtype}, expected {shape} of {dtype}"
+        if dtype.names and dataset.shape == shape:  # they would fill a screen
+            said = "has other columns"
+        raise ResultsError(f"{path}: '{dataset.name}' {said}: {schema.FOREIGN}")

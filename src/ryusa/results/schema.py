@@ -4,12 +4,12 @@ import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ryusa.model import Tally, Term
 from ryusa.model.tally import HELD
 
 FORMAT = 2  # raised when an older reader could misread a folder
+FOREIGN = "another version of ryusa wrote it, or it is damaged"  # of a part with other datasets or columns
 
 CASE_TOML = "case.toml"  # the case as read, byte for byte
 START = "start.csv"  # grains of another run, where the case starts from its frame
@@ -33,9 +33,7 @@ PARTS = "parts"  # folder of write-once HDF5 files
 
 PART_NAME = re.compile(r"part-(\d{6})\.h5")
 SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
-SUBINDEX_NAME = re.compile(
-    r"(?:subindex|shelf)-(\d{6})-\d+-\d+\.h5"
-)  # over some parts; "shelf" in older runs
+SUBINDEX_NAME = re.compile(r"subindex-(\d{6})-\d+-\d+\.h5")  # over some parts
 
 # status in provenance.json
 RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
@@ -96,21 +94,6 @@ TALLY = np.dtype(
         for name in (*_NOW, *_EXTREME, *(term.name.lower() for term in Term), *_CHECK)
     ]
 )
-
-BEFORE_WALLS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.WALL.name.lower()])
-BEFORE_FILMS = np.dtype(
-    [(name, TALLY[name]) for name in BEFORE_WALLS.names or () if name != Term.FILM.name.lower()]
-)
-
-
-def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
-    """Convert rows to dtype TALLY; a term that an earlier version lacks is set to zero."""
-    if tally.dtype == TALLY:
-        return tally
-    rows = np.zeros(tally.shape, TALLY)
-    for name in tally.dtype.names or ():
-        rows[name] = tally[name]
-    return rows
 
 
 def part_name(k: int) -> str:

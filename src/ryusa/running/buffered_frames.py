@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.errors import CheckpointError
-from ryusa.model import EVENT, PASSAGE, Scene, with_momentum
+from ryusa.model import EVENT, PASSAGE, Scene
 from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.running.checkpoint import CheckpointBlock
@@ -23,7 +23,7 @@ def buffered_frames(recorder: CheckpointBlock, scene: Scene, folder: Path) -> di
     """
     if not recorder.arrays:
         return {}
-    rows = {k: with_momentum(one) if k == schema.PASSAGES else one for k, one in recorder.arrays.items()}
+    rows = recorder.arrays
     try:
         k = len(rows["t"])
         shapes: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {

@@ -26,7 +26,7 @@ class LoopState:
     parted: NDArray[np.float64]  # when each grain last left the bed [s], shape (n_grain,)
     hops: NDArray[np.int64]  # saltations by grain, shape (n_grain,)
     gathered: NDArray[np.void]  # contacts that ended and are not yet recorded, dtype EVENT
-    compiled: float = 0.0  # wall time in which the run compiled [s]; earlier checkpoints have none
+    compiled: float  # wall time in which the run compiled [s]
 
     def to_block(self) -> CheckpointBlock:
         """Convert to numbers and arrays for a checkpoint."""
@@ -51,7 +51,7 @@ class LoopState:
                 changed=int(about["changed"]), resting=bool(about["resting"]), hopped=bool(about["hopped"]),
                 since=None if since is None else float(since), wall=float(about["wall"]),
                 parted=arrays["parted"], hops=arrays["hops"], gathered=gathered,
-                compiled=float(about.get("compiled", 0.0)),
+                compiled=float(about["compiled"]),
             )  # fmt: skip
         except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CheckpointError(

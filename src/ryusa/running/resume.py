@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.casefile.earlier import completed
 from ryusa.casefile.row.reach import END, NAME
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.model import Scene, State
@@ -94,25 +93,21 @@ def find_resume_point(
     was = read_json(folder / schema.CASE_JSON, missing_ok=True)
     if not was or not numbered(folder, schema.SCENE_NAME):
         return None  # killed at its start
-    changed = changes_of(completed(was, resolved), resolved)
+    changed = changes_of(was, resolved)
     complete = before.get("status") == schema.COMPLETE
     hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
-    if hard and complete:
-        raise CheckpointError(
-            f"{folder}: the run is complete, and the case has changed since: {_some(hard)}. "
-            f"For the changed case choose another folder with -o; {_ANEW}"
-        )
     if hard:
+        state = "the run is complete, and " if complete else ""
+        made = "".join(f"; {one}" for one in _other_code(code_versions(before), code_versions(origin)))
+        way = "For" if complete else f"`ryusa resume {folder}` continues the run with its own case; for"
         raise CheckpointError(
-            f"{folder}: the case has changed since: {_some(hard)}. `ryusa resume {folder}` continues the run "
-            f"with its own case; for the changed case choose another folder with -o; {_ANEW}"
+            f"{folder}: {state}the case has changed since: {_some(hard)}{made}. "
+            f"{way} the changed case choose another folder with -o; {_ANEW}"
         )
     scenes = read_scenes(folder)
     block, lost = _newest(folder, scenes[0][2].n_grain)
     written_by = {"code": code_versions(before)} if block is None else block.block("identity").values
     was_stop = written_by.get("stop")
-    if isinstance(was_stop, Mapping):
-        was_stop = {"precision": {}, **was_stop}  # earlier versions had none
     stop_changed = any(one.split(".", 1)[0] == "stop" for one in changed) or (
         was_stop is not None and was_stop != identity["stop"]
     )
@@ -121,8 +116,8 @@ def find_resume_point(
         return ResumePoint(before, complete=True)
     if complete and block is None:
         raise CheckpointError(
-            f"{folder}: the run is complete and holds no checkpoint of its end (an earlier version "
-            f"removed it), so it cannot be lengthened; {_ANEW}"
+            f"{folder}: the run is complete and holds no checkpoint of its end, so it cannot be "
+            f"lengthened; {_ANEW}"
         )
     if stop_changed:
         differences += _other_stop(was_stop, identity["stop"], block, changed)
@@ -228,7 +223,6 @@ def _from_checkpoint(
         differences += _delete(parts[n_part:])
         parts = parts[:n_part]
     reach = parts[-1].end if parts else -1
-    assert reach is not None
     buffered = {} if reach != parts_end else buffered_frames(recorder, scene, folder)
     n_recorded = sum(part.n_frame for part in parts) + len(buffered.get("t", ()))
     contacts = sum(part.n_contact for part in parts) + len(buffered.get("contacts", ()))
@@ -270,10 +264,6 @@ def _parts(folder: Path, scene: Scene, *, at_least: int) -> tuple[list[Part], st
             return found, f"{error}: recomputed"
         if part.tail:
             break
-        if part.end is None:
-            raise CheckpointError(
-                f"{path}: written by an earlier version of ryusa that cannot be resumed; {_ANEW}"
-            )
         found.append(part)
         first += part.n_frame
     if len(found) < at_least:
@@ -284,7 +274,6 @@ def _parts(folder: Path, scene: Scene, *, at_least: int) -> tuple[list[Part], st
 
 
 def _size(part: Part) -> PartSize:
-    assert part.end is not None
     return PartSize(part.path.name, part.n_frame, part.n_contact, part.end)
 
 

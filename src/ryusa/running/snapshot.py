@@ -38,7 +38,7 @@ _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
 # arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records, and the
-# energy account of a row, which checkpoints of earlier versions do not have
+# energy account of a row
 _ZERO_UNLESS_USED = {f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "overlap", "event")} | {
     "coupling/water/energy"
 }
@@ -110,7 +110,9 @@ def state_from_block(block: CheckpointBlock, scene: Scene) -> State:
     try:
         return _Reader(block, scene).state()
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise CheckpointError(f"the state in the checkpoint is not valid ({error})") from error
+        raise CheckpointError(
+            f"the state in the checkpoint is not valid, or of another version ({error})"
+        ) from error
 
 
 class _Reader:
@@ -166,9 +168,7 @@ class _Reader:
         event = np.zeros((k, N_EVENT))
         if "contacts/event" in self._arrays:
             event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
-        state = np.ones(k, _INT)
-        if "contacts/state" in self._arrays:  # checkpoints of earlier versions have no states
-            state = self._array("contacts/state", (k,), _INT)
+        state = self._array("contacts/state", (k,), _INT)
         if k and not (state.min() >= 1 and state.max() <= N_STATE):
             raise ValueError(f"the state of a contact is not 1 to {N_STATE}")
         return Contacts(i=i, j=j, event=event, state=state, **found)
@@ -177,14 +177,8 @@ class _Reader:
         values = self._values
         if not values.get("tally"):
             return None
-        names = {one.name: f"tally/{one.name}" for one in fields(Tally)}
-        if "tally/books" in values:  # the name of the terms in checkpoints of earlier versions
-            names["terms"] = "tally/books"
-        given = {name: values[key] for name, key in names.items() if name != "walls" or key in values}
+        given = {one.name: values[f"tally/{one.name}"] for one in fields(Tally)}
         lengths = {"terms": N_TERM, "pending": len(PENDING), "walls": N_WALL_IMPULSE * self._scene.n_wall}
-        for name, most in (("terms", 1), ("pending", 5)):  # earlier versions lack some of the last terms
-            lacks = lengths[name] - len(given[name])
-            given[name] = [*given[name], *[0.0] * (lacks if lacks <= most else 0)]
         found: dict[str, Any] = {}
         for name, value in given.items():
             values = [float(one) for one in (value if name in lengths else [value])]
@@ -252,9 +246,7 @@ class _Reader:
         if values.get(about):
             two = {name: self._floats(f"{about}/{name}", shapes["content"]) for name in ("w", "force_z")}
             x = self._positions(f"{about}/x", n)
-            u = state.u  # checkpoints of earlier versions keep no other
-            if f"{about}/u" in self._arrays:
-                u = self._floats(f"{about}/u", shapes["u"])
+            u = self._floats(f"{about}/u", shapes["u"])
             grains = RowGrainState(x, **two, u=u, eddies=self._eddies(f"{about}/eddies", n))
             if not values.get("fluid"):
                 raise ValueError("a row of water without the water at its grains")

@@ -257,7 +257,7 @@ class Watch:
                 one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
             self.n_contact, self._re_spin = int(values["n_contact"]), float(values["re_spin"])
             self._travel_most = float(values["travel_most"])
-            created, held, *terms = (float(one) for one in values.get("rest", (0.0,) * (2 + N_TERM)))
+            created, held, *terms = (float(one) for one in values["rest"])
             self.rest = SinceRest(created, held, tuple(terms))
             if len(terms) != N_TERM:
                 raise ValueError(f"{len(terms)} terms of the account at rest")

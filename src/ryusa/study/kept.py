@@ -1,4 +1,4 @@
-"""Reading and writing of ledger files, compressed if their name ends in .xz; older formats are read too."""
+"""Reading and writing of ledger files, compressed if their name ends in .xz."""
 
 import json
 import lzma
@@ -17,16 +17,6 @@ from ryusa.study.study import Study
 from ryusa.study.verdict import Effect, first_reading, held_of, robustness, settings_within
 
 COMPRESSED = ".xz"
-# Verdicts of format 1 and their outcomes.
-_OUTCOMES = {
-    "reproduced": "holds",
-    "within": "holds",
-    "reproduced only if": "holds only if",
-    "not reproduced": "fails",
-    "missed": "fails",
-    "contradicts its own equations": "excluded by its own equations",
-    "shown": "shown",
-}
 
 
 def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
@@ -47,26 +37,23 @@ def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
 
 
 def read_ledger(path: Path) -> dict[str, Any]:
-    """Read a ledger of any study, as JSON or compressed, and return it in format 3.
-
-    What an older one says of settings is counted anew from its trials; its file is not changed.
+    """Read a ledger of any study, as JSON or compressed.
 
     Raises
     ------
-    ResultsError : the file is not a ledger, is damaged, or has a later format.
+    ResultsError : the file is not a ledger, is damaged, or has another format.
     """
     try:
         data = path.read_bytes()
         plain: Any = json.loads(lzma.decompress(data) if path.suffix == COMPRESSED else data)
     except (OSError, ValueError, lzma.LZMAError, EOFError) as error:
         raise ResultsError(f"{path}: cannot be read as a ledger ({error})") from None
-    if not isinstance(plain, dict) or plain.get("format") not in range(1, FORMAT + 1):
-        known = f"formats 1 to {FORMAT}"
-        raise ResultsError(f"{path}: is no ledger of ryusa, or of a later version (this one reads {known})")
-    if plain["format"] == 1:
-        plain = _of_claims(plain) if "claims" in plain else _of_comparisons(plain)
-    if plain["format"] < FORMAT:
-        return {**plain, "format": FORMAT, "findings": [_of_settings(one) for one in plain["findings"]]}
+    if not isinstance(plain, dict) or "format" not in plain:
+        raise ResultsError(f"{path}: is no ledger of ryusa")
+    if plain["format"] != FORMAT:
+        raise ResultsError(
+            f"{path}: a ledger in format {plain['format']!r}, of another version; this ryusa reads {FORMAT}"
+        )
     return plain
 
 
@@ -153,17 +140,15 @@ def _by_band_in_force(claim: RegisteredClaim, trial: Mapping[str, Any]) -> dict[
 
 
 def _of_settings(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert an entry of format 2: its outcome and settings are counted anew from its trials.
+    """An entry whose outcome and settings are counted anew from its trials.
 
-    Format 2 left undecided settings out of the shares, counted readings of the same runs as settings in
-    conditions, and said "only if" of cases that are undecided as they ship. The choice that decides is kept,
-    because it follows from single seeds, which no ledger has.
+    The choice that decides is kept, because it follows from single seeds, which no ledger has.
     """
-    held, readings = held_of(entry["trials"]), tuple(entry.get("readings", ()))
+    held, readings = held_of(entry["trials"]), tuple(entry["readings"])
     excluded = entry["outcome"] == Outcome.EXCLUDED
     base = Outcome.EXCLUDED if excluded else base_outcome_of(held, bool(entry["trials"]))
-    old, factor, effect = entry.get("deciding_factor"), None, None
-    if old and "confirmed" in old:  # without it nothing had confirmed the levels
+    old, factor, effect = entry["deciding_factor"], None, None
+    if old:
         levels = tuple(old["holds_at"])
         shares = settings_within(held, old["choice"], levels, readings)
         effect = Effect(old["choice"], old["p"], levels, *shares, old["confirmed"], old["choice"] in readings)
@@ -172,71 +157,10 @@ def _of_settings(entry: Mapping[str, Any]) -> dict[str, Any]:
     outcome = outcome_of(base, effect)
     every = robustness(list(first_reading(held, readings).values()))
     return {
-        **{key: value for key, value in entry.items() if key != "base_verdict"},
+        **entry,
         "outcome": str(outcome),
         "base_outcome": str(base),
         "condition": factor["words"] if factor and outcome is Outcome.ONLY_IF else "",
         "robustness": {**plain_count(every), "low": every.low, "high": every.high},
-        "readings": list(readings),
         "deciding_factor": factor,
-    }
-
-
-def _of_claims(old: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert format 1 of the ledger of the paper."""
-    findings = [
-        {
-            **{key: value for key, value in one.items() if key not in {"sweep", "experiment", "spread"}},
-            "part": one["experiment"],
-            "title": "",
-            "outcome": _OUTCOMES.get(one["verdict"], "undecided"),
-            "source": "",
-            "known": "",
-            "trials": one["sweep"],
-            "chart": None,
-        }
-        for one in old["claims"]
-    ]
-    kept = {key: value for key, value in old.items() if key != "claims"}
-    return {**kept, "format": 2, "study": "paper", "findings": findings}
-
-
-def _of_comparisons(old: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert format 1 of the ledger of the validation."""
-    findings = [
-        {
-            **{key: one[key] for key in ("id", "verdict", "title", "source", "known", "settings", "problem")},
-            "part": one["check"],
-            "outcome": _OUTCOMES.get(one["verdict"], "undecided"),
-            "condition": "",
-            "counts": {},
-            "trials": [_trial_of_error(each) for each in one["errors"]],
-            "beside": [],
-            "decided_by": one["said"],
-            "contradiction": "",
-            "also": [],
-            "chart": {key: one[key] for key in ("axes", "ours", "references", "beside")},
-            "pictures": [one["picture"]] if one["picture"] else [],
-        }
-        for one in old["comparisons"]
-    ]
-    kept = {key: value for key, value in old.items() if key != "comparisons"}
-    return {
-        **kept, "format": 2, "study": "validation", "indicative": old["level"] == "quick", "seeds": [],
-        "findings": findings,
-    }  # fmt: skip
-
-
-def _trial_of_error(error: Mapping[str, Any]) -> dict[str, Any]:
-    asked = {"low": error["low"], "high": error["high"], "unit": error["unit"], "says": error["why"]}
-    return {
-        "part": error["name"],
-        "choices": {},
-        **dict.fromkeys(("value", "low", "high"), error["value"]),
-        "unit": error["unit"],
-        "n": 1,
-        "how": "one number, no interval",
-        "asked": None if error["within"] is None else asked,
-        "outcome": {True: "holds", False: "fails", None: "shown"}[error["within"]],
-        "note": "",
     }

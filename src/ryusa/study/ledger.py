@@ -27,7 +27,7 @@ from ryusa.study.study import Study
 from ryusa.study.task import Task
 from ryusa.study.verdicts import against
 
-FORMAT = 3  # of the JSON file; `kept.read_ledger` reads formats 1 and 2 too
+FORMAT = 3  # of the JSON file
 
 
 @dataclass(frozen=True)

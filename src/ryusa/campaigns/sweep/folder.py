@@ -7,7 +7,6 @@ from typing import Any
 
 from ryusa.campaigns.sweep.part import SweepRun
 from ryusa.campaigns.sweep.plan import SweepPlan
-from ryusa.casefile.earlier import completed
 from ryusa.casefile.resolved import resolved
 from ryusa.errors import ResultsError
 from ryusa.results import schema
@@ -69,7 +68,7 @@ def changed_runs(runs: Sequence[SweepRun], folder: Path) -> dict[SweepRun, list[
         if was is None:
             continue
         now = as_read_back(resolved(run.read()))
-        if changes := changes_of(completed(was, now), now):
+        if changes := changes_of(was, now):
             found[run] = changes
     return found
 

@@ -68,19 +68,12 @@ def read_account(state: State, stats: Floats, terms: Floats, block: EngineBlock 
     if block is None:
         terms[0, :N_TERM], stats[0, S.PENDING] = tally.terms, tally.pending
     else:
-        terms[:, :N_TERM] = _whole(block, "work", len(terms), N_TERM)
-        stats[:, S.PENDING] = _whole(block, "pending", len(terms), len(S.PENDING))
+        terms[:, :N_TERM] = block.array("work", (len(terms), N_TERM), _LARGEST)
+        stats[:, S.PENDING] = block.array("pending", (len(terms), len(S.PENDING)), _LARGEST)
     stats[:, S.OVERLAP_MAX] = tally.overlap_max
     stats[:, S.OVERLAP_GRAIN], stats[:, S.OVERLAP_STEP] = tally.overlap_grain, tally.overlap_step
     stats[:, S.SPEED_MAX], stats[:, S.SPIN_MAX] = tally.speed_max, tally.spin_max
     stats[0, _SUMS] = (*(getattr(tally, name) for name in HELD), tally.n_contact)
-
-
-def _whole(block: EngineBlock, name: str, rows: int, columns: int) -> Floats:
-    """An account of a block, with the last terms, which earlier versions lack, as zero."""
-    shape = block.arrays[name].shape if name in block.arrays else ()
-    have = min(shape[1], columns) if len(shape) == 2 else columns
-    return np.hstack([block.array(name, (rows, have), _LARGEST), np.zeros((rows, columns - have))])
 
 
 def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:
