@@ -33,15 +33,15 @@ Jobs = Annotated[
         "-j",
         metavar="N",
         min=1,
-        help="Runs at a time; default: all cores, or all threads of dask's workers. Slurm needs it.",
+        help="Runs at a time; default: all cores, or all threads of dask's workers.",
     ),
 ]
 On = Annotated[
     str,
     typer.Option(
         "--on", metavar="WHERE",
-        help="Where runs are carried out: processes of this machine, dask:ADDRESS for the workers of a "
-        "scheduler, slurm for jobs of Slurm (slurm:INTERFACE where these are on other machines).",
+        help="Where runs are carried out: processes of this machine, or dask:ADDRESS for the workers of "
+        "a scheduler, which may be jobs of a cluster.",
     ),
 ]  # fmt: skip
 Show = Annotated[bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")]

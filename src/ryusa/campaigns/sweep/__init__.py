@@ -61,8 +61,8 @@ def sweep(
     overrides : keys set in all runs, as `ryusa run --set` takes them.
     folder : for table, page, pictures and runs; default runs/sweep-CASE. Finished runs in it are opened, and
         interrupted ones go on.
-    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
-    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
+    jobs : number of runs at a time; if not given one, or as many as dask has threads.
+    on : where runs are carried out: "processes" or "dask:ADDRESS".
     again : make all runs anew.
     pages : write a page for each run.
     parquet : write the table as Parquet too; needs pyarrow.
