@@ -5,7 +5,7 @@ from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ryusa.study import Plan, Study
     from ryusa.study.executors import RunExecutor
     from ryusa.study.ledger import Ledger
+    from ryusa.study.printed_table import PrintedTable
 
 INTERRUPTED = 130  # exit code after Ctrl-C
 DEFAULT = "processes"  # of --on
@@ -141,7 +142,6 @@ def carried_out(
 
     With an earlier ledger, the new one says which verdicts changed since.
     """
-    from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
     from ryusa.study.kept import kept_at
     from ryusa.study.ledger import make
@@ -149,7 +149,7 @@ def carried_out(
 
     if names is not None and json is not None:
         kept_at(json, chosen, plan.level)  # what cannot be joined is refused before any run
-    try:
+    with writing(out):
         progress = None if quiet else ProgressLines()
         made = make(
             chosen, names, plan, out, where=where, again=again, progress=progress, most_seeds=most_seeds,
@@ -157,10 +157,6 @@ def carried_out(
         )  # fmt: skip
         ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
-    except KeyboardInterrupt:
-        interrupted(out)
-    except OSError as error:
-        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
 
 
 def finish(ledger: "Ledger", files: Sequence[Path], out: Path) -> None:
@@ -315,10 +311,34 @@ def console() -> Any:
     return found if found.is_terminal else Console(width=WIDE, highlight=False)
 
 
-def interrupted(out: Path) -> NoReturn:
-    """Say how to continue, and leave."""
-    typer.echo(f"interrupted; finished runs are kept in {out}. The same command continues there", err=True)
-    raise typer.Exit(INTERRUPTED) from None
+def print_table(table: "PrintedTable", title: str = "") -> None:
+    """Print a table; columns of words begin at the left."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, title=title or None, title_justify="left")
+    for head in table.heads:
+        shown.add_column(escape(head), justify="left" if head in table.words else "right", overflow="fold")
+    for row in table.rows:
+        shown.add_row(*(escape(one if isinstance(one, str) else one.text) for one in row))
+    console().print(shown)
+
+
+@contextmanager
+def writing(out: Path) -> Generator[None]:
+    """Within the block an interrupt says how to continue and leaves; what cannot be written is an error."""
+    from ryusa.errors import ResultsError
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(
+            f"interrupted; finished runs are kept in {out}. The same command continues there", err=True
+        )
+        raise typer.Exit(INTERRUPTED) from None
+    except OSError as error:
+        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
 
 
 def report_failures(
