@@ -12,7 +12,7 @@ import typer
 from ryusa.cli.options import Quiet
 
 if TYPE_CHECKING:
-    from ryusa.study import Plan, Study
+    from ryusa.study import Plan, Study, Task
     from ryusa.study.executors import RunExecutor
     from ryusa.study.ledger import Ledger
     from ryusa.study.printed_table import PrintedTable
@@ -194,31 +194,33 @@ def _seeds(text: str) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-@contextmanager
-def listing(columns: Sequence[str]) -> Generator[Any]:
-    """Table of what a study would run; printed at the end of the block."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in columns:
-        table.add_column(heading, no_wrap=heading == "name")
-    for heading in ("runs", "core minutes"):
-        table.add_column(heading, justify="right")
-    yield table
-    console().print(table)
-
-
 def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int, again: bool) -> None:
     """Print every run of a study with one part, and what all of them cost."""
-    from ryusa.study import estimate_cost
-
     (name,) = mine.parts
-    tasks = list(dict.fromkeys(mine.part(name).tasks(plan)))
-    with listing(("name",)) as table:
-        for one in tasks:
-            table.add_row(one.label, "1", f"{one.cost() / 60.0:.1f}")
-    typer.echo(f"{plan.level}: {estimate_cost(tasks, out / 'runs', jobs=jobs, again=again)}")
+    tasks = dict.fromkeys(mine.part(name).tasks(plan))
+    print_listed(("name",), {(one.label,): [one] for one in tasks}, plan, out, jobs, again)
+
+
+def print_listed(
+    heads: Sequence[str],
+    named: "Mapping[tuple[str, ...], Sequence[Task]]",
+    plan: "Plan",
+    out: Path,
+    jobs: int,
+    again: bool,
+) -> None:
+    """Print how many runs and minutes stand behind some words, and what all runs cost."""
+    from ryusa.study import estimate_cost
+    from ryusa.study.printed_table import PrintedTable
+
+    each = {words: list(dict.fromkeys(tasks)) for words, tasks in named.items()}
+    rows = [
+        (*words, str(len(tasks)), f"{sum(one.cost() for one in tasks) / 60.0:.1f}" if tasks else "-")
+        for words, tasks in each.items()
+    ]
+    print_table(PrintedTable((*heads, "runs", "core minutes"), rows, frozenset(heads)))
+    every = [one for tasks in each.values() for one in tasks]
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def numbers_table() -> Any:
