@@ -121,8 +121,18 @@ def test_a_place_that_is_not_known_is_named_before_anything_is_written(command, 
         pytest.importorskip("sklearn")
     result = call(command, "--on", "dsk:tcp://node1:8786")
     assert result.exit_code == 2, result.output
-    assert "on = 'dsk:tcp://node1:8786': must be one of processes, dask:ADDRESS, slurm" in said(result)
+    assert "on = 'dsk:tcp://node1:8786': must be one of processes, dask:ADDRESS. " in said(result)
     assert "Did you mean 'dask'" in said(result)
+    assert not (place / "out").exists()
+
+
+@pytest.mark.parametrize("typed", ["slurm", "slurm:ib0"])
+def test_jobs_of_slurm_are_asked_for_in_other_words(typed, place):
+    result = call("sweep", "--on", typed, "-j", "4")
+    assert result.exit_code == 2, result.output
+    assert f"on = '{typed}': is not there" in said(result)
+    assert "type --on dask:ADDRESS (docs/many-runs.md has the script)" in said(result)
+    assert "or let ryusa sweep write a job array with --emit slurm" in said(result)
     assert not (place / "out").exists()
 
 

@@ -15,13 +15,12 @@ from ryusa.cli.study import (
     Show,
     console,
     executor_at,
-    interrupted,
+    print_table,
     report_failures,
+    writing,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ryusa.campaigns.calibrate import Calibration, CalibrationAsked
 
 
@@ -86,7 +85,6 @@ def calibrate(
     )
     from ryusa.campaigns.calibrate.page import LOG
     from ryusa.campaigns.sweep.table import unmoved_by_seeds
-    from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
 
     asked = read_calibration(study)
@@ -98,16 +96,12 @@ def calibrate(
         return
     words = ["ryusa", "calibrate", study.name, *(["--extend", str(extend)] if extend else [])]
     words += ["--coverage", str(coverage)] if coverage else []
-    try:
+    with writing(folder):
         made = carry_out_calibration(
             asked, folder, where, again=again, extend=extend, truths=coverage,
             progress=None if quiet else ProgressLines(),
         )  # fmt: skip
         files = write_calibration(made, shlex.join(words))
-    except KeyboardInterrupt:
-        interrupted(folder)
-    except OSError as error:
-        raise ResultsError(f"{folder}: cannot be written ({error.strerror or error})") from None
     _print(made)
     for path in files:
         typer.echo(f"wrote {path}")
@@ -163,98 +157,26 @@ def _print(made: "Calibration") -> None:
     """The verdict, what stands behind it, then observations, parameters and predictions."""
     from rich.markup import escape
 
+    from ryusa.campaigns.calibrate.printed import (
+        coverage_tables,
+        observations_table,
+        parameters_table,
+        quantities_table,
+    )
+
     first, *others = made.words
     console().print(f"[bold]{escape(first)}[/bold]")
     for one in others:
         console().print(f"- {escape(one)}")
     typer.echo()
-    _print_observations(made)
-    _print_parameters(made)
-    _print_predictions(made)
-    _print_coverage(made)
-
-
-def _print_observations(made: "Calibration") -> None:
-    from ryusa.campaigns.calibrate.sentences import shown
-    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
-
-    rows: list[tuple[str, ...]] = []
-    for one, compared, si in zip(
-        made.asked.observations, made.verdict.compared, made.observed_units, strict=True
-    ):
-        unit, factor = shown(si)
-        rows.append(
-            (
-                one.target.words, f"{factor * compared.value:.4g} ± {factor * compared.error:.2g}",
-                printed_number(compared.predicted, 4, factor),
-                printed_interval(compared.least, compared.most, factor), unit, f"{compared.misfit:+.1f}",
-            )
-        )  # fmt: skip
-    _table(("observation", "observed", "posterior", "all runs", "unit", "misfit, s.d."), rows)
-
-
-def _print_parameters(made: "Calibration") -> None:
-    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
-
-    rows = [
-        (
-            str(row["parameter"]), printed_number(row["mean"], 4),
-            printed_number(row["standard_deviation"], 2), str(row["unit"]),
-            printed_interval(row["low_95"], row["high_95"]), printed_number(row["over_prior"], 2),
-            "yes" if row["determined"] else "no",
-        )
-        for row in made.rows
-    ]  # fmt: skip
-    _table(("parameter", "mean", "± s.d.", "unit", "95 %", "of prior", "determined"), rows)
-
-
-def _print_predictions(made: "Calibration") -> None:
-    from ryusa.campaigns.calibrate.sentences import shown
-    from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
-
-    if not made.verdict.reached:
-        return
-    rows: list[tuple[str, ...]] = []
-    for one in made.predicted:
-        unit, factor = shown(one.unit)
-        if one.observed is None:
-            rows.append(
-                (
-                    one.target.words, printed_number(one.mean, 4, factor), printed_number(one.sd, 2, factor),
-                    printed_interval(one.low, one.high, factor), unit,
-                )
-            )  # fmt: skip
-    if rows:
-        _table(("predicted", "posterior", "± s.d.", "95 %", "unit"), rows)
-
-
-def _print_coverage(made: "Calibration") -> None:
-    if made.coverage is None:
-        return
-    rows = [
-        (
-            str(row["parameter"]), str(row["interval"]), f"{row['inside']} of {row['truths']}",
-            f"{row['expected_low']} to {row['expected_high']}",
-        )
-        for row in made.coverage.rows(tuple(one.key for one in made.asked.priors))
-    ]  # fmt: skip
-    _table(("made-up truths: parameter", "interval", "hold the truth", "by chance"), rows)
-    rows = [
-        (str(row["observations"]), f"{row['wrong']} of {row['of']}", f"at most {row['at_most']}")
-        for row in made.coverage.verdict_rows()
-    ]
-    _table(("made-up observations", "wrong verdicts", "by chance, at 5 %"), rows)
-
-
-def _table(headings: "Sequence[str]", rows: "Sequence[Sequence[str]]") -> None:
-    """Print a table whose first column is text."""
-    from rich import box
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for k, heading in enumerate(headings):
-        table.add_column(heading, justify="left" if k == 0 else "right", no_wrap=k > 0)
-    for row in rows:
-        table.add_row(*(escape(one) for one in row))
-    console().print(table)
+    heads = ("observation", "observed ± s.e.", "posterior", "all runs", "unit", "misfit, in s.d.")
+    print_table(observations_table(made).only(*heads))
+    heads = ("parameter", "mean", "s.d.", "unit", "95 %", "s.d. over prior's", "determined")
+    print_table(parameters_table(made, brief=True).only(*heads))
+    predicted = quantities_table(made, predicted=True)
+    if made.verdict.reached and predicted.rows:
+        print_table(predicted.only("quantity", "posterior", "s.d.", "95 %", "unit"), "predicted")
+    if made.coverage is not None:
+        keys = tuple(one.key for one in made.asked.priors)
+        for one in coverage_tables(made.coverage, keys):
+            print_table(one, "made-up truths")

@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,14 +21,13 @@ from ryusa.cli.study import (
     executor_at,
     find_studies,
     finish,
-    listing,
     numbers_table,
     plan_of,
     print_counts,
+    print_listed,
 )
 
 if TYPE_CHECKING:
-    from ryusa.study import Plan
     from ryusa.study.ledger import Ledger
 
 SEEDS = 4  # two halves: a condition is predicted on one and confirmed on the other
@@ -85,7 +83,12 @@ def paper(
     plan, where = plan_of(quick, full, seeds, SEEDS), executor_at(on, jobs)
     chosen = None if not names else [one for name in names for one in _known(name)]
     if show:
-        _list(plan, chosen, out, where.jobs, again)
+        typer.echo("A run that several experiments need is made once.")
+        named = {
+            (name, PAPER.part(name).TITLE, ", ".join(PAPER.claims(name))): PAPER.part(name).tasks(plan)
+            for name in chosen or PAPER.parts
+        }
+        print_listed(("name", "what it answers", "claims"), named, plan, out, where.jobs, again)
         return
     ledger, files = carried_out(
         PAPER, chosen, plan, out, json, where, again, quiet, most_seeds=most_seeds, most_minutes=most_minutes
@@ -112,22 +115,6 @@ def _known(word: str) -> list[str]:
     words = [*NAMES, *(one for name in NAMES for one in PAPER.claims(name))]
     allowed = f"must be one of {', '.join(NAMES)}, or a claim of theirs; ryusa paper --list shows both"
     raise CaseError("experiment", word, allowed, nearest_word(claim, words))
-
-
-def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
-    from ryusa.study import Task, estimate_cost
-    from ryusa_studies.osada2004.study import NAMES, PAPER
-
-    every: list[Task] = []
-    with listing(("name", "what it answers", "claims")) as table:
-        for name in chosen or NAMES:
-            part = PAPER.part(name)
-            tasks = list(dict.fromkeys(part.tasks(plan)))
-            minutes = f"{sum(one.cost() for one in tasks) / 60.0:.1f}" if tasks else "-"
-            table.add_row(name, part.TITLE, ", ".join(PAPER.claims(name)), str(len(tasks)), minutes)
-            every += tasks
-    typer.echo("A run that several experiments need is made once.")
-    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:

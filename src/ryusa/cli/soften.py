@@ -22,6 +22,7 @@ from ryusa.cli.study import (
     finish,
     list_runs,
     plan_of,
+    print_table,
 )
 from ryusa.errors import CaseError
 
@@ -123,32 +124,30 @@ def _factors(text: str) -> list[float]:
 
 def _print(found: "Softening") -> None:
     """Print the error at every stiffness, the steps saved, and the answer."""
-    from rich import box
-    from rich.table import Table
-
     from ryusa.study.interval import short
+    from ryusa.study.printed_table import PrintedTable
 
     question = found.question
     against = "hard grains" if question.against_hard else "the case"
+    within = f"within {question.tolerance}"
     heads = (
-        "k_n \\[N/m]", "softer", f"{question.name} \\[{question.unit}]",
-        f"error against {against} \\[{question.error_unit}]", "steps", "overlap/d",
+        "k_n [N/m]", "softer", f"{question.name} [{question.unit}]",
+        f"error against {against} [{question.error_unit}]", "steps", "overlap/d", within,
     )  # fmt: skip
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in heads:
-        table.add_column(name, justify="right")
-    table.add_column(f"within {question.tolerance}")
     errors = {one.runs.factor: one for one in found.errors}
     words = {True: "yes", False: "no", None: "cannot be said"}
+    rows: list[tuple[str, ...]] = []
     for one in found.runs:
         error = errors.get(one.factor)
         cells = ("-", words[None]) if error is None else (question.interval(error.error), words[error.within])
-        table.add_row(
-            short(one.k_n), f"1/{one.factor:g}", short(one.mean), cells[0], f"1/{one.longer:.3g}",
-            f"{one.overlap:.2g}", cells[1],
+        rows.append(
+            (
+                short(one.k_n), f"1/{one.factor:g}", short(one.mean), cells[0], f"1/{one.longer:.3g}",
+                f"{one.overlap:.2g}", cells[1],
+            )
         )  # fmt: skip
+    print_table(PrintedTable(heads, rows, frozenset({within})))
     out = console()
-    out.print(table)
     if found.fit is not None and found.fit.follows:
         for what, k_n in (("the stiffness of the case", found.k_n), ("hard grains", float("inf"))):
             out.print(

@@ -5,16 +5,17 @@ from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ryusa.cli.options import Quiet
 
 if TYPE_CHECKING:
-    from ryusa.study import Plan, Study
+    from ryusa.study import Plan, Study, Task
     from ryusa.study.executors import RunExecutor
     from ryusa.study.ledger import Ledger
+    from ryusa.study.printed_table import PrintedTable
 
 INTERRUPTED = 130  # exit code after Ctrl-C
 DEFAULT = "processes"  # of --on
@@ -33,15 +34,15 @@ Jobs = Annotated[
         "-j",
         metavar="N",
         min=1,
-        help="Runs at a time; default: all cores, or all threads of dask's workers. Slurm needs it.",
+        help="Runs at a time; default: all cores, or all threads of dask's workers.",
     ),
 ]
 On = Annotated[
     str,
     typer.Option(
         "--on", metavar="WHERE",
-        help="Where runs are carried out: processes of this machine, dask:ADDRESS for the workers of a "
-        "scheduler, slurm for jobs of Slurm (slurm:INTERFACE where these are on other machines).",
+        help="Where runs are carried out: processes of this machine, or dask:ADDRESS for the workers of "
+        "a scheduler, which may be jobs of a cluster.",
     ),
 ]  # fmt: skip
 Show = Annotated[bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")]
@@ -141,7 +142,6 @@ def carried_out(
 
     With an earlier ledger, the new one says which verdicts changed since.
     """
-    from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
     from ryusa.study.kept import kept_at
     from ryusa.study.ledger import make
@@ -149,7 +149,7 @@ def carried_out(
 
     if names is not None and json is not None:
         kept_at(json, chosen, plan.level)  # what cannot be joined is refused before any run
-    try:
+    with writing(out):
         progress = None if quiet else ProgressLines()
         made = make(
             chosen, names, plan, out, where=where, again=again, progress=progress, most_seeds=most_seeds,
@@ -157,10 +157,6 @@ def carried_out(
         )  # fmt: skip
         ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
-    except KeyboardInterrupt:
-        interrupted(out)
-    except OSError as error:
-        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
 
 
 def finish(ledger: "Ledger", files: Sequence[Path], out: Path) -> None:
@@ -198,31 +194,33 @@ def _seeds(text: str) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-@contextmanager
-def listing(columns: Sequence[str]) -> Generator[Any]:
-    """Table of what a study would run; printed at the end of the block."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in columns:
-        table.add_column(heading, no_wrap=heading == "name")
-    for heading in ("runs", "core minutes"):
-        table.add_column(heading, justify="right")
-    yield table
-    console().print(table)
-
-
 def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int, again: bool) -> None:
     """Print every run of a study with one part, and what all of them cost."""
-    from ryusa.study import estimate_cost
-
     (name,) = mine.parts
-    tasks = list(dict.fromkeys(mine.part(name).tasks(plan)))
-    with listing(("name",)) as table:
-        for one in tasks:
-            table.add_row(one.label, "1", f"{one.cost() / 60.0:.1f}")
-    typer.echo(f"{plan.level}: {estimate_cost(tasks, out / 'runs', jobs=jobs, again=again)}")
+    tasks = dict.fromkeys(mine.part(name).tasks(plan))
+    print_listed(("name",), {(one.label,): [one] for one in tasks}, plan, out, jobs, again)
+
+
+def print_listed(
+    heads: Sequence[str],
+    named: "Mapping[tuple[str, ...], Sequence[Task]]",
+    plan: "Plan",
+    out: Path,
+    jobs: int,
+    again: bool,
+) -> None:
+    """Print how many runs and minutes stand behind some words, and what all runs cost."""
+    from ryusa.study import estimate_cost
+    from ryusa.study.printed_table import PrintedTable
+
+    each = {words: list(dict.fromkeys(tasks)) for words, tasks in named.items()}
+    rows = [
+        (*words, str(len(tasks)), f"{sum(one.cost() for one in tasks) / 60.0:.1f}" if tasks else "-")
+        for words, tasks in each.items()
+    ]
+    print_table(PrintedTable((*heads, "runs", "core minutes"), rows, frozenset(heads)))
+    every = [one for tasks in each.values() for one in tasks]
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def numbers_table() -> Any:
@@ -315,10 +313,34 @@ def console() -> Any:
     return found if found.is_terminal else Console(width=WIDE, highlight=False)
 
 
-def interrupted(out: Path) -> NoReturn:
-    """Say how to continue, and leave."""
-    typer.echo(f"interrupted; finished runs are kept in {out}. The same command continues there", err=True)
-    raise typer.Exit(INTERRUPTED) from None
+def print_table(table: "PrintedTable", title: str = "") -> None:
+    """Print a table; columns of words begin at the left."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, title=title or None, title_justify="left")
+    for head in table.heads:
+        shown.add_column(escape(head), justify="left" if head in table.words else "right", overflow="fold")
+    for row in table.rows:
+        shown.add_row(*(escape(one if isinstance(one, str) else one.text) for one in row))
+    console().print(shown)
+
+
+@contextmanager
+def writing(out: Path) -> Generator[None]:
+    """Within the block an interrupt says how to continue and leaves; what cannot be written is an error."""
+    from ryusa.errors import ResultsError
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(
+            f"interrupted; finished runs are kept in {out}. The same command continues there", err=True
+        )
+        raise typer.Exit(INTERRUPTED) from None
+    except OSError as error:
+        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
 
 
 def report_failures(

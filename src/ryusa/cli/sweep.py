@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,11 +16,11 @@ from ryusa.cli.study import (
     Jobs,
     On,
     Show,
-    console,
     executor_at,
-    interrupted,
     plan_of,
+    print_table,
     report_failures,
+    writing,
 )
 
 if TYPE_CHECKING:
@@ -102,13 +102,16 @@ def sweep(
     an interrupted sweep: finished runs are opened, others go on where they were.
     """  # fmt: skip
     # One function: two thirds of it are the options of the command, which typer reads from its signature.
-    from ryusa.campaigns.sweep import carry_out_sweep, write_sweep
+    from ryusa.campaigns.sweep import carry_out_sweep, planned, write_sweep
+    from ryusa.campaigns.sweep.asked import axes_of_words
+    from ryusa.campaigns.sweep.design import GRID, design_of
     from ryusa.campaigns.sweep.folder import refuse_folder
-    from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
 
     where = executor_at(on, jobs)
-    plan = _planned(case, over or [], measure or [], seeds, overrides_of(settings), pages)
+    design = design_of(GRID, axes_of_words(over)) if over else None
+    given = None if seeds is None else plan_of(False, False, seeds).seeds
+    plan = planned(case, design, given, measure or (), overrides_of(settings), pages=pages)
     folder = Path("runs") / f"sweep-{case.stem}" if out is None else out
     if show:
         refuse_folder(plan, folder, again=again)
@@ -121,15 +124,11 @@ def sweep(
         more = [*(["--parquet"] if parquet else []), *([] if pages else ["--no-pages"])]
         _emit(emit, plan, folder, ["sweep", str(case), *words, *more], again)
         return
-    try:
+    with writing(folder):
         made = carry_out_sweep(
             plan, folder, where, again=again, parquet=parquet, progress=None if quiet else ProgressLines()
         )
         files = write_sweep(made, shlex.join(["ryusa", "sweep", case.name, *words]))
-    except KeyboardInterrupt:
-        interrupted(folder)
-    except OSError as error:
-        raise ResultsError(f"{folder}: cannot be written ({error.strerror or error})") from None
     _print(made)
     for path in files:
         typer.echo(f"wrote {path}")
@@ -137,35 +136,6 @@ def sweep(
         text, which = made.unmoved
         typer.echo(f"warning: {which}: {text}", err=True)
     report_failures(made.problems, made.faults, made.traces, folder / "sweep-errors.log")
-
-
-def _planned(
-    case: Path,
-    over: Sequence[str],
-    measures: Sequence[str],
-    seeds: str | None,
-    overrides: dict[str, str],
-    pages: bool,
-) -> "SweepPlan":
-    """The sweep of the command, or of a file with a table [sweep]; every case is checked."""
-    from ryusa.campaigns.sweep import plan_sweep, seeds_of
-    from ryusa.campaigns.sweep.asked import axes_of_words, is_sweep_file, read_sweep
-    from ryusa.campaigns.sweep.design import GRID, design_of
-    from ryusa.errors import CaseError
-
-    given = None if seeds is None else plan_of(False, False, seeds).seeds
-    if is_sweep_file(case):
-        if over:
-            raise CaseError("--over", over[0], f"stands in {case.name}, which has a table [sweep]")
-        file = read_sweep(case)
-        return plan_sweep(
-            file.case, file.design, seeds_of(file.seeds) if given is None else given,
-            measures or file.measures, overrides={**file.overrides, **overrides}, pages=pages,
-        )  # fmt: skip
-    design = design_of(GRID, axes_of_words(over))
-    return plan_sweep(
-        case, design, seeds_of(None) if given is None else given, measures, overrides=overrides, pages=pages
-    )
 
 
 def _words(
@@ -181,7 +151,7 @@ def _words(
 def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], again: bool) -> None:
     """Write the scripts of another scheduler, and say how to submit them."""
     from ryusa.campaigns.sweep.slurm import emit_slurm, submission
-    from ryusa.errors import CaseError, ResultsError
+    from ryusa.errors import CaseError
     from ryusa.spelling import known_word
 
     known_word(what, ("slurm",), "--emit")
@@ -189,10 +159,8 @@ def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], agai
         raise CaseError(
             "--again", None, "cannot be combined with --emit: a requeued run goes on. Choose another -o"
         )
-    try:
+    with writing(folder):
         scripts, n = emit_slurm(plan, folder, words)
-    except OSError as error:
-        raise ResultsError(f"{folder}: cannot be written ({error.strerror or error})") from None
     for path in scripts:
         typer.echo(f"wrote {path}")
     typer.echo(f"{n} {'run' if n == 1 else 'runs'} to make. To submit:")
@@ -202,23 +170,18 @@ def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], agai
 
 def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
     """Every setting with its cost, what differs between the cases, and the cost of all by number of cores."""
-    from rich import box
-    from rich.markup import escape
-    from rich.table import Table
-
     from ryusa.campaigns.sweep.folder import RUNS
     from ryusa.study import estimate_cost
     from ryusa.study.cost import by_cores
+    from ryusa.study.printed_table import PrintedTable
 
     n = len(plan.seeds)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("no.", *plan.design.keys, "runs", "core minutes"):
-        table.add_column(escape(heading), justify="right")
     first = plan.first_runs
-    for k, run in enumerate(first[:MOST_LISTED]):
-        values = (escape(one) for one in plan.design.settings[k].values())
-        table.add_row(str(k + 1), *values, str(n), f"{n * run.cost() / 60.0:.1f}")
-    console().print(table)
+    rows = [
+        (str(k + 1), *plan.design.settings[k].values(), str(n), f"{n * run.cost() / 60.0:.1f}")
+        for k, run in enumerate(first[:MOST_LISTED])
+    ]
+    print_table(PrintedTable(("no.", *plan.design.keys, "runs", "core minutes"), rows))
     if len(first) > MOST_LISTED:
         typer.echo(f"and {len(first) - MOST_LISTED} more settings")
     if plan.design.dropped:
@@ -234,60 +197,47 @@ def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
 
 def _explain(plan: "SweepPlan") -> None:
     """Values that differ between the settings, as `ryusa check` prints them."""
-    from rich import box
-    from rich.markup import escape
-    from rich.table import Table
+    from ryusa.study.printed_table import PrintedTable
 
     if not plan.explained or len(plan.design.settings) > MOST_LISTED:
         return
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, title="what differs", title_justify="left")
-    table.add_column("value")
-    for k in range(min(len(plan.design.settings), 8)):
-        table.add_column(str(k + 1), justify="right", overflow="fold")
-    for name, held in plan.explained:
-        table.add_row(escape(name), *(escape(one) for one in held[:8]))
-    console().print(table)
+    heads = ("value", *(str(k + 1) for k in range(min(len(plan.design.settings), 8))))
+    rows = [(name, *held[:8]) for name, held in plan.explained]
+    print_table(PrintedTable(heads, rows, frozenset({"value"})), "what differs")
 
 
 def _warn(plan: "SweepPlan") -> None:
     """What `ryusa check` warns of, on stderr."""
-    n = len(plan.design.settings)
     for text, which in plan.warnings.items():
-        held = "all settings" if len(which) == n else f"setting {', '.join(str(one) for one in which)}"
-        typer.echo(f"warning: {held}: {text}", err=True)
+        typer.echo(f"warning: {plan.named(which)}: {text}", err=True)
 
 
 def _print(made: "Sweep") -> None:
     """Every quantity of every setting: the mean over the seeds with the error between them."""
-    from rich import box
-    from rich.markup import escape
-    from rich.table import Table
-
     from ryusa.campaigns.sweep.part import short_names
+    from ryusa.study.printed_table import PrintedTable
 
     plan, quantities = made.plan, made.quantities
-    keys = short_names(plan.design.keys)
-    settings = [[escape(value) for value in one.values()] for one in plan.design.settings[:MOST_LISTED]]
+    keys = tuple(short_names(plan.design.keys))
+    settings = [tuple(one.values()) for one in plan.design.settings[:MOST_LISTED]]
     if len(keys) > MOST_BESIDE:  # the settings have a table of their own, and are named by number below
-        table: Any = Table("no.", *map(escape, keys), box=box.SIMPLE_HEAD, pad_edge=False)
-        for k, values in enumerate(settings):
-            table.add_row(str(k + 1), *values)
-        console().print(table)
-        keys, settings = ["no."], [[str(k + 1)] for k in range(len(settings))]
-    table = Table("quantity", *map(escape, keys), box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("value", "± s.e.", "unit", "runs"):
-        table.add_column(heading, justify="right")
-    table.add_column("steady")
+        rows = [(str(k + 1), *values) for k, values in enumerate(settings)]
+        print_table(PrintedTable(("no.", *keys), rows, frozenset({"no.", *keys})))
+        keys, settings = ("no.",), [(str(k + 1),) for k in range(len(settings))]
+    rows: list[tuple[str, ...]] = []
     for one in quantities:
         for k, values in enumerate(settings):
             mean = one.pooled[k]
-            name = escape(one.title) if k == 0 else ""
+            name = one.title if k == 0 else ""
             if mean is None:
-                table.add_row(name, *values, "–", "–", one.unit, "0", "-")
+                rows.append((name, *values, "–", "–", one.unit, "0", "-"))
                 continue
-            table.add_row(
-                name, *values, f"{mean.value:.4g}", mean.error_text.rstrip("*"), one.unit,
-                str(len(one.runs[k])), "no" if mean.changes else mean.verdict,
+            rows.append(
+                (
+                    name, *values, f"{mean.value:.4g}", mean.error_text.rstrip("*"), one.unit,
+                    str(len(one.runs[k])), "no" if mean.changes else mean.verdict,
+                )
             )  # fmt: skip
+    heads = ("quantity", *keys, "value", "± s.e.", "unit", "runs", "steady")
     if quantities:
-        console().print(table)
+        print_table(PrintedTable(heads, rows, frozenset({"quantity", *keys, "steady"})))

@@ -1,7 +1,6 @@
 """`ryusa validate`: compare ours with every reference, with each error as a number."""
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,14 +21,13 @@ from ryusa.cli.study import (
     executor_at,
     find_studies,
     finish,
-    listing,
     numbers_table,
     plan_of,
     print_counts,
+    print_listed,
 )
 
 if TYPE_CHECKING:
-    from ryusa.study import Plan
     from ryusa.study.ledger import Ledger
 
 MISSED = 4  # exit code where all was computed and something lies outside its tolerance
@@ -89,7 +87,9 @@ def validate(
     plan, where = plan_of(quick, full, seeds), executor_at(on, jobs)
     chosen = None if not names else [_known(name) for name in names]
     if show:
-        _list(plan, chosen, out, where.jobs, again)
+        parts = {name: VALIDATION.part(name) for name in chosen or VALIDATION.parts}
+        named = {(name, part.TITLE): part.tasks(plan) for name, part in parts.items()}
+        print_listed(("name", "what it checks"), named, plan, out, where.jobs, again)
         return
     earlier = None if against is None else read_ledger(against)  # first: --json may write the same file
     if earlier is not None:
@@ -112,20 +112,6 @@ def _known(word: str) -> str:
     from ryusa_studies.validation.study import NAMES
 
     return known_word(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
-
-
-def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
-    from ryusa.study import Task, estimate_cost
-    from ryusa_studies.validation.study import NAMES, load
-
-    every: list[Task] = []
-    with listing(("name", "what it checks")) as table:
-        for name in chosen or NAMES:
-            tasks = list(dict.fromkeys(load(name).tasks(plan)))
-            minutes = sum(one.cost() for one in tasks) / 60.0
-            table.add_row(name, load(name).TITLE, str(len(tasks)), f"{minutes:.1f}")
-            every += tasks
-    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:

@@ -143,6 +143,12 @@ def save(figure: Figure, path: Path | str) -> Path:
     return path
 
 
+def save_both(figure: Figure, path: Path) -> Path:
+    """Write a figure as SVG and PNG, and return the latter; `path` has no suffix, its name may hold dots."""
+    save(figure, path.with_name(f"{path.name}.svg"))
+    return save(figure, path.with_name(f"{path.name}.png"))
+
+
 def height(unit: str, above: str = "datum") -> str:
     """Label of an axis of heights: "height above datum  $z$  (cm)"; `unit` "d" is diameters.
 

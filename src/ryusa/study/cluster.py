@@ -6,8 +6,6 @@ its case by name and its measurements: run folders are on a disk that all see.
 
 import pickle
 import secrets
-import shutil
-from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import suppress
@@ -27,14 +25,37 @@ ANSWER = 20.0  # s within which a scheduler and its workers answer
 _END = 3.0 * remote.PATIENCE  # s within which all runs that were asked to end have ended
 
 
-class Workers(RunExecutor):
-    """Workers of a dask scheduler; a run whose worker is lost goes on at another from its checkpoint."""
+class DaskWorkers(RunExecutor):
+    """Workers of a scheduler that is there already.
 
-    def __init__(self, jobs: int) -> None:
-        self.jobs = jobs
+    A run whose worker is lost goes on at another from its checkpoint.
+
+    Parameters
+    ----------
+    address : of the scheduler, such as "tcp://node1:8786", "tls://node1:8786" or "node1:8786".
+    jobs : number of runs at a time; all threads of its workers if not given.
+
+    Raises
+    ------
+    CaseError : dask is not installed, no scheduler answers there, or it has no workers.
+    """
+
+    def __init__(self, address: str, jobs: int | None = None) -> None:
+        self.address = address
+        if find_spec("distributed") is None:
+            raise CaseError("on", f"dask:{address}", "needs distributed: pip install 'ryusa[cluster]'")
         from distributed import KilledWorker
 
         self.lost = (BrokenExecutor, KilledWorker)
+        with self._client() as client:
+            threads = sum(client.nthreads().values())
+        if not threads:
+            raise CaseError(
+                "on",
+                f"dask:{address}",
+                "the scheduler there has no workers; `dask worker ADDRESS` starts one",
+            )
+        self.jobs = jobs or threads
 
     def here(self, n: int, made: int) -> bool:
         """Workers make runs; finished ones are opened by the calling process."""
@@ -51,56 +72,21 @@ class Workers(RunExecutor):
         """
         folder.mkdir(parents=True, exist_ok=True)
         probe = _written_probe(folder)
-        client, cluster = None, None
+        client = None
         try:
-            client, cluster = self._connect(folder, tasks)
+            client = self._client()
             token = probe.read_text(encoding="utf-8")
             site = Site(str(Path.cwd()), str(probe), token, _read_by(tasks), remote.versions())
             _refuse_workers(client, site)
-            return DaskPool(client, site, cluster)
+            return DaskPool(client, site)
         except BaseException:
-            close(client, cluster, probe)
+            _close(client, probe)
             raise
-
-    @abstractmethod
-    def _connect(self, folder: Path, tasks: Sequence[Task]) -> tuple[Any, Any]:
-        """Return a client of dask, and the cluster that was started for it or None."""
 
     def stop(self, pool: Executor) -> None:
         """End all runs by SIGTERM; each closes its folder."""
         assert isinstance(pool, DaskPool)
         pool.end()
-
-
-class DaskWorkers(Workers):
-    """Workers of a scheduler that is there already.
-
-    Parameters
-    ----------
-    address : of the scheduler, such as "tcp://node1:8786", "tls://node1:8786" or "node1:8786".
-    jobs : number of runs at a time; all threads of its workers if not given.
-
-    Raises
-    ------
-    CaseError : dask is not installed, no scheduler answers there, or it has no workers.
-    """
-
-    def __init__(self, address: str, jobs: int | None = None) -> None:
-        self.address = address
-        need_dask(f"dask:{address}")
-        with self._client() as client:
-            threads = sum(client.nthreads().values())
-        if not threads:
-            raise CaseError(
-                "on",
-                f"dask:{address}",
-                "the scheduler there has no workers; `dask worker ADDRESS` starts one",
-            )
-        super().__init__(jobs or threads)
-
-    def _connect(self, folder: Path, tasks: Sequence[Task]) -> tuple[Any, Any]:
-        del folder, tasks
-        return self._client(), None
 
     def _client(self) -> Any:
         from distributed import Client
@@ -125,11 +111,9 @@ class DaskPool(Executor):
     ----------
     client : a client of dask, closed with the pool.
     site : what workers must share with this process.
-    cluster : closed with the pool, if any.
     """
 
-    def __init__(self, client: Any, site: Site, cluster: Any = None) -> None:
-        self.cluster = cluster
+    def __init__(self, client: Any, site: Site) -> None:
         self._client, self._probe = client, Path(site.probe)
         self._site, self._token = remote.packed_site(site), site.token
         self._executor = client.get_executor(pure=False)
@@ -148,14 +132,14 @@ class DaskPool(Executor):
             self.end()
             return
         self._executor.shutdown(wait=True)
-        close(self._client, self.cluster, self._probe)
+        _close(self._client, self._probe)
 
     def end(self) -> None:
         """End all runs, wait until their folders are closed, and let the workers go."""
         with suppress(Exception):  # a scheduler that is gone has no runs
             self._executor.shutdown(wait=False)
             self._client.run(remote.ended, self._token, on_error="ignore", timeout=_END)
-        close(self._client, self.cluster, self._probe)
+        _close(self._client, self._probe)
 
 
 def _pass_on(done: "Future[bytes]", found: "Future[Any]") -> None:
@@ -198,20 +182,9 @@ def _written_probe(folder: Path) -> Path:
     return path.resolve()
 
 
-def close(client: Any, cluster: Any, left: Path) -> None:
-    """Close what is open, and remove what was written for it."""
-    for one in (client, cluster):
-        if one is not None:
-            with suppress(Exception):  # the other end may have gone
-                one.close()
-    if left.is_dir():
-        shutil.rmtree(left, ignore_errors=True)
-    else:
-        left.unlink(missing_ok=True)
-
-
-def need_dask(name: str) -> None:
-    """Say how to install what an executor needs where it is missing."""
-    for module in ("distributed", "dask_jobqueue") if name.startswith("slurm") else ("distributed",):
-        if find_spec(module) is None:
-            raise CaseError("on", name, f"needs {module.replace('_', '-')}: pip install 'ryusa[cluster]'")
+def _close(client: Any, probe: Path) -> None:
+    """Close a client, if any, and remove what was written for it."""
+    if client is not None:
+        with suppress(Exception):  # the other end may have gone
+            client.close()
+    probe.unlink(missing_ok=True)

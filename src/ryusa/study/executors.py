@@ -1,7 +1,7 @@
 """Where the runs of a study are carried out: executors of `concurrent.futures`, by name.
 
 An executor opens as one of `concurrent.futures`, and nothing else of it is used. Results do not depend on the
-executor. Those of a cluster are in `cluster` and `slurm`.
+executor. That of a cluster is in `cluster`.
 """
 
 import os
@@ -48,9 +48,6 @@ class RunExecutor(ABC):
     def submit(self, pool: Executor, call: Callable[..., Value], *given: Any) -> Future[Value]:
         """Hand one call to an open executor."""
         return pool.submit(call, *given)
-
-    def look(self, pool: Executor) -> None:  # noqa: B027 - most have nothing to look after
-        """Called several times a second while runs are under way; raises if they cannot go on."""
 
     @abstractmethod
     def stop(self, pool: Executor) -> None:
@@ -103,23 +100,19 @@ def _processes(given: str, jobs: int | None) -> RunExecutor:
     return Processes(jobs or 1)
 
 
-def _in_module(module: str, name: str) -> Callable[[str, int | None], RunExecutor]:
-    """An executor of a module that stands above this one, which is loaded when it is asked for."""
-
-    def opened(given: str, jobs: int | None) -> RunExecutor:
-        return getattr(import_module(module), name)(given, jobs)
-
-    return opened
+def _dask(address: str, jobs: int | None) -> RunExecutor:
+    cluster = import_module("ryusa.study.cluster")  # it stands above this module, and needs the extra cluster
+    return cluster.DaskWorkers(address, jobs)
 
 
 DEFAULT = "processes"
 # by name; of what stands after the colon, and the number of runs at a time if it is given
-EXECUTORS: dict[str, Callable[[str, int | None], RunExecutor]] = {
-    DEFAULT: _processes,
-    "dask": _in_module("ryusa.study.cluster", "DaskWorkers"),
-    "slurm": _in_module("ryusa.study.slurm", "SlurmJobs"),
-}
-FORMS = "processes, dask:ADDRESS, slurm, slurm:INTERFACE"
+EXECUTORS: dict[str, Callable[[str, int | None], RunExecutor]] = {DEFAULT: _processes, "dask": _dask}
+FORMS = "processes, dask:ADDRESS"
+_OF_SLURM = (
+    "is not there: start workers of dask as jobs of Slurm and type --on dask:ADDRESS (docs/many-runs.md has "
+    "the script), or let ryusa sweep write a job array with --emit slurm"
+)
 
 
 def executor_of(on: str, jobs: int | None = None) -> RunExecutor:
@@ -127,18 +120,19 @@ def executor_of(on: str, jobs: int | None = None) -> RunExecutor:
 
     Parameters
     ----------
-    on : a name of `EXECUTORS`, with its address after a colon: "processes", "dask:tcp://node1:8786", "slurm",
-        "slurm:ib0".
+    on : a name of `EXECUTORS`, with its address after a colon: "processes", "dask:tcp://node1:8786".
     jobs : number of runs at a time, 1 or more; if not given, one process, or all threads of dask's workers.
 
     Raises
     ------
-    CaseError : there is no executor of that name, it cannot be reached, or `jobs` is less than 1 or missing.
+    CaseError : there is no executor of that name, it cannot be reached, or `jobs` is less than 1.
 
     >>> executor_of("processes", 2).jobs
     2
     """
     name, _, given = on.partition(":")
+    if name == "slurm":
+        raise CaseError("on", on, _OF_SLURM)
     if name not in EXECUTORS:
         raise CaseError("on", on, f"must be one of {FORMS}", nearest_word(name, list(EXECUTORS)))
     if jobs is not None and jobs < 1:

@@ -4,7 +4,7 @@ import base64
 import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from PIL import Image
@@ -56,9 +56,33 @@ def number(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def write_log(log: Path, traces: Mapping[str, str]) -> None:
-    """Write the tracebacks of errors in the program; without errors, remove an earlier log."""
+def write_page(page: Path, text: str, traces: Mapping[str, str]) -> None:
+    """Write a page, and the tracebacks of errors in the program beside it; without errors, no log stays.
+
+    Raises
+    ------
+    OSError : a file cannot be written.
+    """
+    log = page.with_name(f"{page.stem}-errors.log")
     if traces:
         write_atomically(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()).encode())
     else:
         log.unlink(missing_ok=True)
+    write_atomically(page, text.encode())
+
+
+class ShownPicture(NamedTuple):
+    """A picture as a page holds it: its name, its path in the folder, its address, its width."""
+
+    name: str
+    path: str
+    address: str
+    wide: bool
+
+
+def shown_pictures(pictures: Mapping[str, Path], folder: Path) -> list[ShownPicture]:
+    """Pictures of a folder, by name, with what a page needs of them."""
+    return [
+        ShownPicture(name, path.relative_to(folder).as_posix(), embedded(path), is_wide(path))
+        for name, path in pictures.items()
+    ]

@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ryusa.errors import RyusaError
-from ryusa.figures import save
 from ryusa.figures.comparison import compared
+from ryusa.figures.style import save_both
 from ryusa.measure import write_csv
 from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
@@ -265,7 +265,7 @@ def _drawn(
     pictures: list[Path] = []
     with noted(faults, drawing, passing=(OSError,)):
         for picture, figure in figures.items():
-            pictures.append(_saved(figure, folder / name / picture))
+            pictures.append(save_both(figure, folder / name / picture))
     return pictures
 
 
@@ -277,14 +277,8 @@ def _charted(one: LedgerEntry, folder: Path, faults: dict[str, Fault]) -> tuple[
     drawn: tuple[Path, ...] = ()
     with noted(faults, f"{one.part}: chart of {one.id}", passing=(OSError,)):
         figure = compared(chart.x, chart.y, chart.ours, chart.references, chart.beside)
-        drawn = (_saved(figure, folder / one.finding.id),)
+        drawn = (save_both(figure, folder / one.finding.id),)
     return drawn
-
-
-def _saved(figure: Figure, path: Path) -> Path:
-    """Save a picture as SVG and PNG; its name may contain dots."""
-    save(figure, path.with_name(f"{path.name}.svg"))
-    return save(figure, path.with_name(f"{path.name}.png"))
 
 
 def _unjudged(study: Study, name: str, problem: str) -> list[LedgerEntry]:

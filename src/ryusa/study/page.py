@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ryusa.running.disk import write_atomically
-from ryusa.study.html import embedded, is_wide, template, write_log
+from ryusa.study.html import embedded, is_wide, template, write_page
 from ryusa.study.interval import short
 from ryusa.study.kept import joined, kept_at, write_ledger
 from ryusa.study.ledger import Ledger
@@ -35,8 +34,7 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     files = {ledger.folder / f"{ledger.stem}.json": plain, **({} if copy is None else {copy: whole})}
     for path, content in files.items():  # first, so that the numbers are kept if the page fails
         write_ledger(path, content)
-    write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
-    write_atomically(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
+    write_page(page, render(ledger.study, plain, ledger.tables, ledger.folder), ledger.traces)
     return (page, *files)
 
 
@@ -63,6 +61,7 @@ def render(
     page = template(study.template, interval=interval, limits=limits_in_words, asked=study.asked)
     context = {
         "ledger": plain,
+        "title": study.title,
         "study": study,
         "findings": sections,
         "parts": [

@@ -32,8 +32,7 @@ COMPARED = ("numba", "llvmlite", "numpy", "scipy", "h5py")  # packages that give
 STOPPED = 128 + signal.SIGTERM  # exit code of a process whose run was asked to end
 SHARED = "All workers must see it under the same path, on a shared disk"
 _LOOK = 0.2  # s between two looks whether a result is still wanted
-PYTHON = sys.executable
-_COMMAND = (PYTHON, "-P", "-c", "from ryusa.study.remote import main; main()")
+_COMMAND = (sys.executable, "-P", "-c", "from ryusa.study.remote import main; main()")
 
 _under_way: dict[subprocess.Popen[bytes], str] = {}  # processes of this worker, with the token of their study
 

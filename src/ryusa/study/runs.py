@@ -231,7 +231,6 @@ def _in_pool(
                 progress.started(one)
             ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
             progress.tick()
-            where.look(pool)
             for future in ready:
                 one = running.pop(future)
                 try:

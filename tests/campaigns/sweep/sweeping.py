@@ -16,6 +16,24 @@ SHORT = {
     "build.length": "3 cm", "build.layers": "2", "stop.time": "4 s", "record.settle": "1 s",
     "record.frames": "20 ms",
 }  # fmt: skip
+STUDY = """'Twice a number.'
+from ryusa.study import calculation
+
+def twice(x):
+    return {"y": 2.0 * x}
+
+def tasks(plan):
+    return [calculation(twice, x=float(seed)) for seed in plan.seeds]
+
+def measure(results, task):
+    raise AssertionError("there is no run")
+
+def rows(found, plan):
+    return [{"x": dict(task.arguments)["x"], "y": float(one["y"])} for task, one in found.items()]
+
+def judge(found, plan):
+    return []
+"""
 PATIENCE = 300.0  # s: the machine may be busy
 
 

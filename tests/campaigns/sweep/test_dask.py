@@ -16,6 +16,7 @@ from ryusa.study import cluster, remote
 sys.path.insert(0, str(Path(__file__).parent))
 from sweeping import (
     OUT,
+    STUDY,
     continued,
     finish,
     harmed,
@@ -112,26 +113,6 @@ def test_ctrl_c_ends_remote_runs_with_a_checkpoint_and_a_killed_worker_costs_not
     assert continued(place) >= 2
     assert table(place) == by_processes
     assert not harmed(tmp_path)
-
-
-STUDY = """'Twice a number.'
-from ryusa.study import calculation
-
-def twice(x):
-    return {"y": 2.0 * x}
-
-def tasks(plan):
-    return [calculation(twice, x=float(seed)) for seed in plan.seeds]
-
-def measure(results, task):
-    raise AssertionError("there is no run")
-
-def rows(found, plan):
-    return [{"x": dict(task.arguments)["x"], "y": float(one["y"])} for task, one in found.items()]
-
-def judge(found, plan):
-    return []
-"""
 
 
 def test_a_study_gives_the_same_table_at_the_workers(dask, tmp_path, monkeypatch):

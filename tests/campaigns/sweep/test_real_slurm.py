@@ -24,8 +24,11 @@ from sweeping import (
     table,
     under_way,
     wait_until,
+    words,
 )  # fmt: skip
 
+PAGE = (Path(__file__).parents[3] / "docs" / "many-runs.md").read_text(encoding="utf-8")
+(SCRIPT,) = re.findall(r"```bash\n(.*?)```", PAGE, flags=re.DOTALL)
 HERE = Path(__file__).with_name("slurm_here.sh")
 MISSING = [one for one in ("sbatch", "slurmctld", "slurmd", "munged") if shutil.which(one) is None]
 pytestmark = [
@@ -97,32 +100,27 @@ def test_a_job_array_gives_the_same_bits_though_requeued_and_at_its_time_limit(s
     assert not harmed(tmp_path)
 
 
-def test_jobs_of_slurm_give_the_same_bits_though_one_is_cancelled(slurm, by_processes, tmp_path):
-    pytest.importorskip("dask_jobqueue")
+def test_workers_in_one_job_give_the_same_bits_though_the_job_is_ended(slurm, by_processes, tmp_path):
+    pytest.importorskip("distributed")
     place = new_place(tmp_path)
-    process = start(place, "--on", "slurm", "-j", "2")
-    wait_until(lambda: len(under_way(place)) == 2, process)
-    assert [one.stat().st_mode & 0o777 for one in (place / OUT).glob("runs/.keys-*")] == [0o700]
-    asked("scancel", jobs()[0])
-    code, said = finish(process)
-    assert code == 0, said
+    (place / "dask.sh").write_text(SCRIPT.replace("--ntasks=64", "--ntasks=2"))
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+
+    def submit():
+        command = ["sbatch", "--parsable", f"--export=ALL,PATH={path}", "dask.sh"]
+        ryusa = [sys.executable, "-c", "from ryusa.cli import main; main()", *words(OUT)]
+        return subprocess.run([*command, *ryusa], cwd=place, check=True, capture_output=True, text=True)
+
+    first = submit().stdout.strip()
+    wait_until(lambda: len(under_way(place)) == 2)
+    assert [one.stat().st_mode & 0o777 for one in place.glob(".keys-*")] == [0o700]
+    asked("scancel", "--full", "--signal=TERM", first)  # as at its time limit
+    wait_until(lambda: not jobs())
+    submit()
+    wait_until((place / OUT / "sweep.csv").is_file)
+    wait_until(lambda: not jobs())
+    assert states(place) == ["complete"] * 4
     assert continued(place) >= 1
     assert_the_same(place, by_processes)
-    wait_until(lambda: not jobs())
-    assert not list((place / OUT).glob("runs/.*"))
+    assert not list(place.glob(".keys-*"))
     assert not harmed(tmp_path)
-
-
-def test_what_slurm_does_not_take_is_said_before_any_run(slurm, tmp_path, monkeypatch):
-    pytest.importorskip("dask_jobqueue")
-    monkeypatch.setenv("SBATCH_PARTITION", "nowhere")
-    place = new_place(tmp_path)
-    code, said = finish(start(place, "--on", "slurm", "-j", "2"))
-    assert code == 2
-    assert "Slurm does not take the jobs" in said
-    assert "invalid partition specified: nowhere" in said
-    code, said = finish(start(place, "--on", "slurm"))
-    assert "jobs: must be given with --on slurm" in said
-    code, said = finish(start(place, "--on", "slurm:ib7", "-j", "2"))
-    assert "ib7 must be an interface, one of lo" in said
-    assert not list(tmp_path.rglob("case.json"))

@@ -47,8 +47,8 @@ def calibrate(
         opened, and interrupted ones go on.
     extend : how many times priors may be extended where a posterior lies at their edge; 0 for never.
     coverage : number of made-up truths on which intervals and verdict are checked; 0 for none.
-    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
-    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
+    jobs : number of runs at a time; if not given one, or as many as dask has threads.
+    on : where runs are carried out: "processes" or "dask:ADDRESS".
     again : make all runs anew.
     progress : whether to print cost and progress on stderr.
 

@@ -21,12 +21,13 @@ from ryusa.campaigns.calibrate.runs import CaseRuns
 from ryusa.campaigns.calibrate.sentences import headline, remarks
 from ryusa.campaigns.calibrate.tables import observation_rows, parameter_rows, printed_number
 from ryusa.campaigns.calibrate.verdict import CalibrationVerdict, judge
+from ryusa.campaigns.sweep.folder import refuse_other_plan
 from ryusa.campaigns.sweep.part import SweepRun
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
 from ryusa.results.shown import needed
 from ryusa.running import provenance
-from ryusa.running.folder import refuse_if_not_writable, write_json
+from ryusa.running.folder import write_json
 from ryusa.study.executors import RunExecutor
 from ryusa.study.progress import StudyProgress
 
@@ -172,7 +173,7 @@ def carry_out_calibration(
     KeyboardInterrupt : Ctrl-C or SIGTERM; what is finished is kept, and the next call goes on.
     """
     need_sklearn()
-    refuse_folder(asked, folder)
+    refuse_other_plan(folder / PLAN, "calibration", FORMAT, _plain(asked), _identity)
     runs = CaseRuns(asked, folder, where, again, progress)
     first = filling_points(len(asked.priors), asked.points, asked.design_seed)
     seeds = tuple(range(1, asked.seeds + 1))
@@ -277,36 +278,9 @@ def _possible(runs: CaseRuns, verdict: CalibrationVerdict) -> CalibrationVerdict
     return replace(verdict, compared=compared)
 
 
-def refuse_folder(asked: CalibrationAsked, folder: Path) -> None:
-    """Refuse a folder that holds something else, or the calibration of other cases or parameters.
-
-    Raises
-    ------
-    ResultsError : names what is in the folder.
-    """
-    import json
-
-    refuse_if_not_writable(folder)
-    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
-        return
-    try:
-        kept = json.loads((folder / PLAN).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        kept = None
-    if not isinstance(kept, dict) or kept.get("format") != FORMAT:
-        raise ResultsError(
-            f"{folder}: exists and holds no calibration of ryusa: it is not changed. Choose another with -o"
-        )
-    now = _plain(asked)
-    differ = [
-        f"{name} {kept.get(name)}, now {now[name]}"
-        for name in ("cases", "parameters")
-        if kept.get(name) != now[name]
-    ]
-    if differ:
-        raise ResultsError(
-            f"{folder}: holds another calibration: {'; '.join(differ)}. Choose another folder with -o"
-        )
+def _identity(plain: Mapping[str, Any]) -> dict[str, str]:
+    """What makes a calibration another one: its cases and parameters."""
+    return {name: str(plain.get(name)) for name in ("cases", "parameters")}
 
 
 def _plain(asked: CalibrationAsked) -> dict[str, Any]:

@@ -1,9 +1,8 @@
 """Runs of a calibration: every case at points of the parameters, and what they gave."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +11,8 @@ from ryusa.campaigns.calibrate.asked import CalibrationAsked, Target
 from ryusa.campaigns.calibrate.design import settings_of
 from ryusa.campaigns.calibrate.heaps import read_test, refuse_other_test
 from ryusa.campaigns.calibrate.prior import DIGITS, Prior
-from ryusa.campaigns.sweep.folder import changed_runs
-from ryusa.campaigns.sweep.part import Measured, SweepRun, runs_of
+from ryusa.campaigns.sweep.folder import RUNS, refuse_changed
+from ryusa.campaigns.sweep.part import Measured, SweepRun, measured, problems_of, runs_of
 from ryusa.campaigns.sweep.plan import SweepPlan, plan_sweep
 from ryusa.casefile.derive import derive
 from ryusa.errors import CaseError, ResultsError
@@ -25,9 +24,8 @@ from ryusa.study.runs import TaskResults, carry_out
 
 Floats = NDArray[np.float64]
 
-RUNS = "runs"
 SHARE_OF_RUNS = 0.75  # of the runs of a target that must have given it
-NAMED = 4  # changes that are named
+NAMED = 4  # runs that are named
 
 
 @dataclass
@@ -43,7 +41,7 @@ class CaseRuns:
     progress : receives the progress.
     u : points of the unit cube, by run.
     found : what was measured, by run.
-    counts : results of each call, for the provenance.
+    results : of all calls, for the provenance.
     """
 
     asked: CalibrationAsked
@@ -53,7 +51,7 @@ class CaseRuns:
     progress: StudyProgress | None = None
     u: dict[SweepRun, Floats] = field(default_factory=dict[SweepRun, Floats])
     found: dict[SweepRun, Measured] = field(default_factory=dict[SweepRun, Measured])
-    counts: list[TaskResults] = field(default_factory=list[TaskResults])
+    results: TaskResults = field(default_factory=lambda: TaskResults({}))
 
     def plans(self, u: Floats, seeds: Sequence[int]) -> dict[Path, SweepPlan]:
         """Every case at points, checked as a whole.
@@ -71,14 +69,8 @@ class CaseRuns:
                 heights=self.asked.heights(case),
             )  # fmt: skip
             self._refuse_other_tests(case, found[case])
-            changed = {} if self.again else changed_runs(found[case].runs, self.folder)
-            if changed:
-                every = list(dict.fromkeys(one for held in changed.values() for one in held))
-                raise ResultsError(
-                    f"{self.folder}: {case.name} has changed since {len(changed)} of its runs were made: "
-                    f"{'; '.join(every[:NAMED])}. Choose another folder with -o for the changed case, change "
-                    "it back, or make all runs anew with --again"
-                )
+            if not self.again:
+                refuse_changed(found[case].runs, self.folder, case.name)
         return found
 
     def _refuse_other_tests(self, case: Path, plan: SweepPlan) -> None:
@@ -111,19 +103,14 @@ class CaseRuns:
         plans = self.plans(u, seeds)
         tasks = {str(case): plan.runs for case, plan in plans.items()}
         done = carry_out(
-            tasks, _Loaded({str(case): plan for case, plan in plans.items()}), self.folder / RUNS,
+            tasks, {str(case): plan.part for case, plan in plans.items()}.__getitem__, self.folder / RUNS,
             again=self.again, progress=self.progress, where=self.where,
         )  # fmt: skip
-        self.counts.append(done)
+        self.results.add(done)
         made: list[SweepRun] = []
         for case, plan in plans.items():
-            missing = done.missing.get(str(case), {})
             for run in plan.runs:
-                fault = missing.get(run)
-                measured = done.found[str(case)].get(run)
-                self.found[run] = measured or Measured(
-                    problems={"run": fault.words if fault is not None else "was not carried out"}
-                )
+                self.found[run] = measured(run, str(case), done)
                 self.u[run] = _place(self.asked, run)
                 made.append(run)
         return made
@@ -181,9 +168,9 @@ class CaseRuns:
         CaseError : no run has such a quantity; names those that there are.
         """
         names: dict[str, str] = {}
-        for run, measured in self.found.items():
+        for run, held in self.found.items():
             if run.case == target.case.stem:
-                names |= {one.name: one.unit for one in measured.averages.get(target.measure, ())}
+                names |= {one.name: one.unit for one in held.averages.get(target.measure, ())}
         if target.name in names:
             return names[target.name]
         if target.at is not None:
@@ -203,26 +190,12 @@ class CaseRuns:
     @property
     def traces(self) -> dict[str, str]:
         """Tracebacks of errors in the program."""
-        return {what: text for one in self.counts for what, text in traces_of(one, {}).items()}
+        return traces_of(self.results, {})
 
     @property
     def problems(self) -> dict[str, str]:
         """Runs or measures without numbers, with the reason."""
-        return {
-            one.label if what == "run" else f"{one.label}: {what}": reason
-            for one, held in self.found.items()
-            for what, reason in held.problems.items()
-        }
-
-
-@dataclass(frozen=True)
-class _Loaded:
-    """Gives the runs and measures of a case by its file, in any process."""
-
-    plans: Mapping[str, SweepPlan]
-
-    def __call__(self, name: str) -> Any:
-        return self.plans[name].part
+        return problems_of(self.found)
 
 
 def _of_case(target: Target, runs: Sequence[SweepRun]) -> list[SweepRun]:

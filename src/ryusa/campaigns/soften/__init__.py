@@ -58,8 +58,8 @@ def soften(
     against : what errors refer to: "case", the stiffness of the case, or "hard", the limit of hard grains.
     overrides : changes to the case, as `ryusa run --set` takes them.
     folder : for page, table, picture and runs; default runs/soften-CASE. Finished runs in it are opened.
-    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
-    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
+    jobs : number of runs at a time; if not given one, or as many as dask has threads.
+    on : where runs are carried out: "processes" or "dask:ADDRESS".
     progress : whether to print cost and progress on stderr.
 
     Raises

@@ -18,6 +18,7 @@ __all__ = [
     "SweepPlan",
     "carry_out_sweep",
     "plan_sweep",
+    "planned",
     "seeds_of",
     "sweep",
     "write_sweep",
@@ -61,8 +62,8 @@ def sweep(
     overrides : keys set in all runs, as `ryusa run --set` takes them.
     folder : for table, page, pictures and runs; default runs/sweep-CASE. Finished runs in it are opened, and
         interrupted ones go on.
-    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
-    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
+    jobs : number of runs at a time; if not given one, or as many as dask has threads.
+    on : where runs are carried out: "processes" or "dask:ADDRESS".
     again : make all runs anew.
     pages : write a page for each run.
     parquet : write the table as Parquet too; needs pyarrow.
@@ -74,17 +75,11 @@ def sweep(
     ResultsError : the folder holds another sweep, or runs of the case as it was before.
     """
     names = (measure,) if isinstance(measure, str) else tuple(measure)
-    path, given = Path(case), dict(overrides or {})
-    found = None
-    if is_sweep_file(path):
-        if over or design != GRID or points is not None:
-            raise CaseError("over", None, f"stands in {path.name}, which has a table [sweep]")
-        file = read_sweep(path)
-        found, path, given = file.design, file.case, {**file.overrides, **given}
-        names, seeds = names or file.measures, file.seeds if seeds is None else seeds
-    if found is None:
-        found = _settings(design, over, points, design_seed)
-    plan = plan_sweep(path, found, seeds_of(seeds), names, overrides=given, pages=pages)
+    settings = None
+    if over or design != GRID or points is not None:
+        axes = listed(over) if design == LIST else axes_of(over)
+        settings = design_of(design, axes, points=points, seed=design_seed)
+    plan = planned(Path(case), settings, seeds, names, overrides or {}, pages=pages)
     out = Path("runs") / f"sweep-{Path(case).stem}" if folder is None else Path(folder)
     made = carry_out_sweep(
         plan, out, executor_of(on, jobs), again=again, parquet=parquet,
@@ -94,9 +89,36 @@ def sweep(
     return made
 
 
-def _settings(design: str, over: Over, points: int | None, design_seed: int) -> SweepDesign:
-    axes = listed(over) if design == LIST else axes_of(over)
-    return design_of(design, axes, points=points, seed=design_seed)
+def planned(
+    case: Path,
+    design: SweepDesign | None,
+    seeds: int | Sequence[int] | None,
+    measures: Sequence[str],
+    overrides: Mapping[str, str],
+    *,
+    pages: bool,
+) -> SweepPlan:
+    """Check a sweep of a case, or of a file with a table `[sweep]`.
+
+    Parameters
+    ----------
+    case : either file.
+    design : settings; None for those of the file, or of seeds alone.
+    seeds, measures, overrides : go before those of the file.
+    pages : as in `plan_sweep`.
+
+    Raises
+    ------
+    CaseError : as `plan_sweep`, or the file has settings and so has the call.
+    """
+    if is_sweep_file(case):
+        if design is not None:
+            raise CaseError("over", None, f"stands in {case.name}, which has a table [sweep]")
+        file = read_sweep(case)
+        case, design, overrides = file.case, file.design, {**file.overrides, **overrides}
+        measures, seeds = measures or file.measures, file.seeds if seeds is None else seeds
+    settings = design_of(GRID, []) if design is None else design
+    return plan_sweep(case, settings, seeds_of(seeds), measures, overrides=overrides, pages=pages)
 
 
 def seeds_of(seeds: int | Sequence[int] | None) -> tuple[int, ...]:

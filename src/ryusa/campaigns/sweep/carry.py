@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ryusa.campaigns.sweep.folder import RUNS, keep_plan, refuse_folder
-from ryusa.campaigns.sweep.part import Measured, SweepRun
+from ryusa.campaigns.sweep.part import Measured, SweepRun, measured, problems_of
 from ryusa.campaigns.sweep.pictures import Quantity, drawn_effects, quantities_of
 from ryusa.campaigns.sweep.plan import SweepPlan
 from ryusa.campaigns.sweep.table import UNMOVED, Cell, rows_of_sweep, unmoved_by_seeds
-from ryusa.errors import CaseError
-from ryusa.figures import save
+from ryusa.figures.style import save_both
 from ryusa.formats.parquet import need_pyarrow, write_rows_as_parquet
 from ryusa.measure import write_csv
 from ryusa.notebook import html_table
@@ -23,7 +22,7 @@ from ryusa.study.executors import RunExecutor
 from ryusa.study.fault import Fault, noted
 from ryusa.study.origin import counted, traces_of
 from ryusa.study.progress import StudyProgress
-from ryusa.study.runs import TaskResults, carry_out
+from ryusa.study.runs import carry_out
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -150,9 +149,10 @@ def carry_out_sweep(
     provenance.commit()  # read now: later changes of the files are not part of the running code
     keep_plan(plan, folder)
     results = carry_out(
-        {PART: plan.runs}, _Loaded(plan), folder / RUNS, again=again, progress=progress, where=where
-    )
-    found = {one: _of(one, results) for one in plan.runs}
+        {PART: plan.runs}, {PART: plan.part}.__getitem__, folder / RUNS,
+        again=again, progress=progress, where=where,
+    )  # fmt: skip
+    found = {one: measured(one, PART, results) for one in plan.runs}
     faults: dict[str, Fault] = {}
     columns = plan.columns
     rows = rows_of_sweep(columns, plan.runs, plan.measures, found)
@@ -163,38 +163,11 @@ def carry_out_sweep(
     with noted(faults, "pictures", passing=(OSError,)):
         quantities = quantities_of(plan.measures, _by_setting(plan, found))
         for name, figure in drawn_effects(plan.design, columns, quantities).items():
-            save(figure, folder / PICTURES / f"{name}.svg")
-            pictures[name] = save(figure, folder / PICTURES / f"{name}.png")
-    problems = {
-        one.label if what == "run" else f"{one.label}: {what}": reason
-        for one, held in found.items()
-        for what, reason in held.problems.items()
-    }
+            pictures[name] = save_both(figure, folder / PICTURES / name)
     return Sweep(
-        plan, folder, found, rows, problems, counted(results, where.jobs), traces_of(results, faults),
-        pictures, {what: one.words for what, one in faults.items()},
+        plan, folder, found, rows, problems_of(found), counted(results, where.jobs),
+        traces_of(results, faults), pictures, {what: one.words for what, one in faults.items()},
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class _Loaded:
-    """Gives the part of a sweep by its name, in any process."""
-
-    plan: SweepPlan
-
-    def __call__(self, name: str) -> Any:
-        if name != PART:
-            raise CaseError("part", name, f"must be {PART}")
-        return self.plan.part
-
-
-def _of(one: SweepRun, results: TaskResults) -> Measured:
-    """What is known of a run, one that failed included."""
-    found = results.found[PART].get(one)
-    if found is not None:
-        return found
-    fault = results.missing.get(PART, {}).get(one)
-    return Measured(problems={"run": fault.words if fault is not None else "was not carried out"})
 
 
 def _by_setting(plan: SweepPlan, found: Mapping[SweepRun, Measured]) -> list[list[Measured]]:

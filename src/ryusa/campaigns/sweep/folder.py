@@ -1,7 +1,7 @@
 """The folder of a sweep: what it holds of earlier calls, and whether that is the same sweep."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,33 +34,68 @@ def refuse_folder(plan: SweepPlan, folder: Path, *, again: bool = False) -> None
     ------
     ResultsError : names what is in the folder, or what of the case has changed.
     """
+    refuse_other_plan(folder / PLAN, "sweep", FORMAT, plain_plan(plan), _identity)
+    if not again:
+        refuse_changed(plan.runs, folder, "the case")
+
+
+def refuse_other_plan(
+    path: Path,
+    what: str,
+    version: int,
+    plain: Mapping[str, Any],
+    identity: Callable[[Mapping[str, Any]], Mapping[str, str]],
+) -> None:
+    """Refuse a folder that holds something else than an earlier call of the same sweep or calibration.
+
+    Parameters
+    ----------
+    path : file of the plan; its folder need not exist.
+    what : "sweep" or "calibration".
+    version, plain : format and content that the file is to have.
+    identity : what of the content, in words, makes it another one.
+
+    Raises
+    ------
+    ResultsError : names what is in the folder.
+    """
+    folder = path.parent
     refuse_if_not_writable(folder)
     if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return
-    kept = _read(folder / PLAN)
-    if kept is None or kept.get("format") != FORMAT:
+    kept = _read(path)
+    if kept is None or kept.get("format") != version:
         raise ResultsError(
-            f"{folder}: exists and holds no sweep of ryusa, so it is not changed. Choose another with -o"
+            f"{folder}: exists and holds no {what} of ryusa, so it is not changed. Choose another with -o"
         )
-    was, now = _identity(kept), _identity(_plain(plan))
+    was, now = identity(kept), identity(plain)
     differ = [f"{name} {was[name]}, now {now[name]}" for name in now if was[name] != now[name]]
     if differ:
         raise ResultsError(
-            f"{folder}: holds another sweep: {'; '.join(differ)}. Choose another folder with -o"
+            f"{folder}: holds another {what}: {'; '.join(differ)}. Choose another folder with -o"
         )
-    changed = {} if again else changed_runs(plan.runs, folder)
+
+
+def refuse_changed(runs: Sequence[SweepRun], folder: Path, case: str) -> None:
+    """Refuse runs of a case as it was before; `case` is its name.
+
+    Raises
+    ------
+    ResultsError : names what of the case has changed.
+    """
+    changed = _changed(runs, folder)
     if changed:
         every = list(dict.fromkeys(one for held in changed.values() for one in held))
         more = f" and {len(every) - _NAMED} more" if len(every) > _NAMED else ""
         n = len(changed)
         raise ResultsError(
-            f"{folder}: the case has changed since {n} of its runs {'was' if n == 1 else 'were'} made: "
+            f"{folder}: {case} has changed since {n} of its runs {'was' if n == 1 else 'were'} made: "
             f"{'; '.join(every[:_NAMED])}{more}. Choose another folder with -o for the changed case, "
             "change it back, or make all runs anew with --again"
         )
 
 
-def changed_runs(runs: Sequence[SweepRun], folder: Path) -> dict[SweepRun, list[str]]:
+def _changed(runs: Sequence[SweepRun], folder: Path) -> dict[SweepRun, list[str]]:
     """Runs in a folder that are of another case than they would be now, with the keys that differ."""
     found: dict[SweepRun, list[str]] = {}
     for run in runs:
@@ -76,10 +111,11 @@ def changed_runs(runs: Sequence[SweepRun], folder: Path) -> dict[SweepRun, list[
 def keep_plan(plan: SweepPlan, folder: Path) -> None:
     """Write what is to be run, before the first run."""
     folder.mkdir(parents=True, exist_ok=True)
-    write_json(folder / PLAN, _plain(plan))
+    write_json(folder / PLAN, plain_plan(plan))
 
 
-def _plain(plan: SweepPlan) -> dict[str, Any]:
+def plain_plan(plan: SweepPlan) -> dict[str, Any]:
+    """What is to be run, for a JSON file."""
     return {
         "format": FORMAT,
         "case": plan.case.name,

@@ -15,7 +15,7 @@ from ryusa.measure.statistics import Average
 from ryusa.report.page import report_page
 from ryusa.results import Results, schema
 from ryusa.running.disk import write_atomically
-from ryusa.study import CaseRun, Plan
+from ryusa.study import CaseRun, Plan, TaskResults
 
 PAGE_SIZE = 2.0e6  # of the grains in motion on the page of one run [B]
 PAGE_SECONDS = 4.0  # to measure a run and write its page
@@ -105,6 +105,24 @@ class Measured:
     averages: Mapping[str, tuple[Average, ...]] = field(default_factory=dict[str, tuple[Average, ...]])
     problems: Mapping[str, str] = field(default_factory=dict[str, str])
     warnings: tuple[str, ...] = ()
+
+
+def measured(run: SweepRun, part: str, results: TaskResults) -> Measured:
+    """What is known of a run of a part, one that failed included."""
+    found = results.found[part].get(run)
+    if found is not None:
+        return found
+    fault = results.missing.get(part, {}).get(run)
+    return Measured(problems={"run": fault.words if fault is not None else "was not carried out"})
+
+
+def problems_of(found: Mapping[SweepRun, Measured]) -> dict[str, str]:
+    """Runs or measures without numbers, with the reason."""
+    return {
+        one.label if what == "run" else f"{one.label}: {what}": reason
+        for one, held in found.items()
+        for what, reason in held.problems.items()
+    }
 
 
 @dataclass(frozen=True)

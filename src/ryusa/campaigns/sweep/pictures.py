@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matplotlib.figure import Figure
@@ -148,18 +148,3 @@ def _written_unit(column: SweepColumn) -> tuple[str, float]:
     if column.unit and unit and si_unit(f"1 {unit}") == column.unit:
         return unit, quantity(f"1 {unit}", column.unit)
     return column.unit, 1.0
-
-
-def pooled_cells(one: Quantity, k: int, seeds: int) -> Mapping[str, object]:
-    """Cell of the table of a page: value, error, steadiness and number of runs of one setting."""
-    mean = one.pooled[k]
-    if mean is None:
-        return {"text": "–", "steady": True, "verdict": "", "runs": 0, "seeds": seeds}
-    n = len(one.runs[k])
-    return {
-        "text": f"{mean.value:.4g} ± {mean.error_text.rstrip('*')}",
-        "steady": not mean.changes,
-        "verdict": mean.verdict,
-        "runs": n,
-        "seeds": seeds,
-    }

@@ -62,6 +62,11 @@ class SweepPlan:
         """Run of every setting with the first seed."""
         return list(self.runs[:: len(self.seeds)])
 
+    def named(self, which: Sequence[int]) -> str:
+        """Settings by their numbers from 1."""
+        every = len(which) == len(self.design.settings)
+        return "all settings" if every else f"setting {', '.join(map(str, which))}"
+
     def setting_in_words(self, k: int) -> str:
         """Setting number k from 0 in words."""
         return _words(self.design, k)
