@@ -32,9 +32,9 @@ from typing import Any
 
 from cited_number import Number, UnknownNumber, nearest, plain, settings, share, worded
 
-from ryusa.study.said import count_of
 from ryusa.study.study import Study
 from ryusa.study.verdict import Count, Key, counted, held_of
+from ryusa.study.verdict_words import count_of
 
 LEDGERS = Path(__file__).parent / "ledgers"
 END = "<!--/-->"
@@ -162,7 +162,7 @@ def lookup(text: str) -> Number:
 @cache  # a page asks a hundred times
 def kept(name: str) -> dict[str, Any]:
     """Ledger of that name, judged by the bands that are in force."""
-    from ryusa.study.kept import as_registered, read_ledger
+    from ryusa.study.ledger_file import as_registered, read_ledger
 
     path = LEDGERS / f"{name}.json.xz"
     if not path.exists():

@@ -41,7 +41,7 @@ def paper_table() -> str:
 
 def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> str:
     """In how many settings each claim holds at the standard and at the full level."""
-    from ryusa.study.said import count_of
+    from ryusa.study.verdict_words import count_of
     from ryusa_studies.osada2004.study import PAPER
 
     more = {one["id"]: one for one in full["findings"]}

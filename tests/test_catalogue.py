@@ -16,7 +16,7 @@ from ryusa import measure
 from ryusa.casefile.read import read
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load, option
 from ryusa.cli import app
-from ryusa.cli.chosen import ALWAYS
+from ryusa.cli.measure_options import ALWAYS
 
 ENTRIES = (*MEASURES, *PICTURES)
 

@@ -239,7 +239,7 @@ MEASURES = (
                  numbers=(("rate_in", "kg/s"), ("rate_out", "kg/s")),
                  needs=("traffic",)),
     MeasureEntry("passages", "ryusa.measure.passages:passages",
-                 "each grain that a feed brought or an exit took: time, size, speed, place; debts of feeds",
+                 "each grain that a feed brought or an exit took: time, size, speed, place; backlog of feeds",
                  WINDOW, settled=True, builders=EVERY_BUILDER, fed=True, clumps=True, needs=("traffic",)),
     MeasureEntry("long_section", "ryusa.measure.long_section:long_section",
                  "surface, bed, speed, Froude number, discharge of water and grains along a row of columns",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.build.case import build
-from ryusa.build.traffic import leaving_row, steps_between
+from ryusa.build.feeds import leaving_row, steps_between
 from ryusa.casefile import read
 from ryusa.cases import case_path
 

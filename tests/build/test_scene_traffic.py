@@ -13,8 +13,8 @@ from ryusa.errors import CaseError
 from ryusa.laws.families import Arm, DampingLaw, Rolling
 from ryusa.model import RollingLaw
 from ryusa.model.contact_law import elastic_spheres
+from ryusa.model.feeds import IN, OUT
 from ryusa.model.scene import EventRule
-from ryusa.model.traffic import IN, OUT
 from ryusa.results.scene_file import scene_digest
 from ryusa.running.stops import Stop
 

@@ -9,14 +9,14 @@ from tests.casefile.texts import FED, SAND
 import ryusa
 from ryusa.build import build
 from ryusa.casefile import derive, read
+from ryusa.casefile.feeds.values import fed_amount, fed_count, feed_end
 from ryusa.casefile.read import read_text
 from ryusa.casefile.row.ends import hydrograph_of, stage_of
 from ryusa.casefile.row.values import row_plan
-from ryusa.casefile.traffic.values import fed_amount, fed_count, feed_end
 from ryusa.casefile.trial import read_shortened
 from ryusa.errors import CaseError
 from ryusa.model.course import Course
-from ryusa.model.traffic import Feed
+from ryusa.model.feeds import Feed
 
 TRIANGLE = Course((0.0, 10.0, 20.0, 20.0, 30.0), (0.0, 1.0, 0.0, 0.5, 0.5))  # with a jump at 20 s
 

@@ -4,8 +4,8 @@ import pytest
 from tests.casefile.texts import FED
 
 import ryusa
+from ryusa.casefile.feeds.values import fed_count, feed_end
 from ryusa.casefile.read import read_text
-from ryusa.casefile.traffic.values import fed_count, feed_end
 from ryusa.errors import CaseError
 
 

@@ -8,13 +8,13 @@ import pytest
 
 from ryusa.build import build
 from ryusa.casefile.explain import explain
+from ryusa.casefile.feeds.schema import read_rate
+from ryusa.casefile.feeds.values import mean_mass
 from ryusa.casefile.read import read_text
 from ryusa.casefile.resolved import resolved
-from ryusa.casefile.traffic.schema import read_rate
-from ryusa.casefile.traffic.values import mean_mass
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
-from ryusa.model.traffic import NONE
+from ryusa.model.feeds import NONE
 
 HEAP = case_path("poured_heap.toml").read_text()
 BOX = """

@@ -9,7 +9,7 @@ import pytest
 
 import ryusa
 from ryusa.campaigns.sweep import plan_sweep, seeds_of
-from ryusa.campaigns.sweep.asked import read_sweep
+from ryusa.campaigns.sweep.definition import read_sweep
 from ryusa.campaigns.sweep.part import Measured, runs_of
 from ryusa.campaigns.sweep.table import RUN, SEEDS, rows_of_sweep
 from ryusa.cases import case_path

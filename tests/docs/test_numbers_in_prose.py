@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from ryusa.study import Outcome
-from ryusa.study.said import said
+from ryusa.study.verdict_words import said
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "paper.md"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.study.kept import as_registered, read_ledger
+from ryusa.study.ledger_file import as_registered, read_ledger
 from ryusa.study.page import render
 from ryusa_studies.osada2004.claims import CLAIMS
 from ryusa_studies.osada2004.study import PAPER

@@ -5,7 +5,7 @@ from html import unescape
 from pathlib import Path
 
 from ryusa.study import Level, Plan
-from ryusa.study.kept import as_registered, read_ledger
+from ryusa.study.ledger_file import as_registered, read_ledger
 from ryusa.study.page import render
 from ryusa_studies.validation.study import NAMES, VALIDATION, counted, load, table
 

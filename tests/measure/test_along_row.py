@@ -17,8 +17,8 @@ from ryusa.measure import deposit
 from ryusa.measure.along_row import grains_along_row, moving_in_row, segments_of
 from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model.column import Column
+from ryusa.model.feeds import IN, OUT, PASSAGE
 from ryusa.model.row import ColumnRow, RowDam
-from ryusa.model.traffic import IN, OUT, PASSAGE
 from ryusa.water.row import shape_of
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_sums import GrainPlaces, place_grains

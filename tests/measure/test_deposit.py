@@ -12,8 +12,8 @@ from ryusa.figures.deposit import deposit as drawn_deposit
 from ryusa.figures.front import front as drawn_front
 from ryusa.measure.deposit import deposit
 from ryusa.measure.front import front
+from ryusa.model.feeds import IN, OUT, PASSAGE
 from ryusa.model.row import ColumnRow, RowDam
-from ryusa.model.traffic import IN, OUT, PASSAGE
 
 T = np.arange(11) * 0.1
 

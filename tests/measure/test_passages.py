@@ -11,7 +11,7 @@ from ryusa import build
 from ryusa.errors import ResultsError
 from ryusa.figures.passages import passages as drawn
 from ryusa.measure import passages
-from ryusa.model.traffic import IN, OUT, PASSAGE
+from ryusa.model.feeds import IN, OUT, PASSAGE
 
 DT, INTERVAL = 1.0e-3, 10  # a step, and steps between two instants
 SIZES = np.linspace(1.0e-3, 2.0e-3, 7)  # of the first grain and of six that are fed

@@ -22,8 +22,8 @@ from ryusa.laws._family import evaluate
 from ryusa.laws.families import ContactTiming
 from ryusa.model import Exit, Feed, Traffic
 from ryusa.model.clump import drag_form, shape
+from ryusa.model.feeds import IN, OUT
 from ryusa.model.scene import EventRule
-from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results, schema
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop

@@ -20,7 +20,7 @@ from ryusa.casefile.row.reach_record import bed_lines, supplied
 from ryusa.casefile.row.reach_source import reach_of, repeated
 from ryusa.errors import CaseError
 from ryusa.measure import discharge, passages, transport
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 from ryusa.results import Results, schema
 from ryusa.water._kernel import parameters_of
 from ryusa.water.row_inlet import bed_thickness

@@ -12,13 +12,13 @@ import pytest
 import ryusa
 from ryusa.build import build
 from ryusa.build import scene as scene_of
-from ryusa.build.traffic import moving_with
+from ryusa.build.feeds import moving_with
 from ryusa.build.walls import WallMotion, rectangle, with_walls
 from ryusa.casefile import read_text
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.model.walls import INTERVAL
 from ryusa.results import Results
 from ryusa.results.scene_file import scene_digest

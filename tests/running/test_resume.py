@@ -15,7 +15,7 @@ import ryusa
 from ryusa.build import scene as scene_of
 from ryusa.casefile.read import read_text
 from ryusa.errors import CheckpointError, ResultsError
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, loop, recorder
 from ryusa.running.runner import run_scene

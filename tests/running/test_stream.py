@@ -24,7 +24,7 @@ from ryusa.measure.front import front
 from ryusa.measure.loads import loads
 from ryusa.measure.long_section import long_section
 from ryusa.measure.walls import walls
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.report.contents import contents_of
 from ryusa.results import Results, schema
 from ryusa.units import quantity

@@ -16,14 +16,14 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
 from ryusa.results.scene_file import scene_digest
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.feeds import TrafficRule
 from ryusa.running.recorder import Recorder
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
-from ryusa.running.traffic import TrafficRule
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences

@@ -15,8 +15,8 @@ from tests.engine.test_clumps_in_water import cloud
 from ryusa.laws.dispatch import hindered
 from ryusa.laws.families import Drag, Hindrance, SurfaceRule
 from ryusa.model import Exit, Feed, Scene, State, Traffic
+from ryusa.model.feeds import IN, OUT
 from ryusa.model.fluid import EXTRA_X
-from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results
 from ryusa.running import loop as loop_module
 from ryusa.running.runner import run_scene

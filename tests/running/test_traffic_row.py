@@ -10,9 +10,9 @@ import pytest
 from tests.running.test_traffic_column import RHO, STEPS, Books, G, along, fed, passed, weight_along
 
 from ryusa.model import Scene, State
+from ryusa.model.feeds import IN, OUT
 from ryusa.model.fluid import EXTRA_X
 from ryusa.model.row import ColumnRow
-from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results
 from ryusa.running import loop as loop_module
 from ryusa.running.runner import run_scene

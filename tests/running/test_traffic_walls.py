@@ -14,7 +14,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
 from ryusa.engine.shared.passages import removed
 from ryusa.model import Exit, Feed, Scene, State, Term, Traffic
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop

@@ -6,7 +6,7 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.study import Study
-from ryusa.study.kept import as_registered, read_ledger, write_ledger
+from ryusa.study.ledger_file import as_registered, read_ledger, write_ledger
 from ryusa.study.registration import Registration
 
 PLAIN = {"format": 3, "study": "mine", "findings": [{"id": "one", "verdict": "holds"}]}

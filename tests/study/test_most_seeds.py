@@ -9,8 +9,8 @@ import pytest
 from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.study import Band, Finding, Level, Plan, Source, calculation, comparison, misfit, over_seeds
-from ryusa.study.kept import read_ledger
 from ryusa.study.ledger import make
+from ryusa.study.ledger_file import read_ledger
 from ryusa.study.page import made_by, write
 from ryusa.study.study import Study
 

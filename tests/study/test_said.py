@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from ryusa.study import Band, Finding, Outcome, Plan, Study, Trial, exact, over_range
 from ryusa.study.entry import LedgerEntry, plain_entry
-from ryusa.study.said import checks, said, tally
 from ryusa.study.verdict import Count, held_of, settings_within
+from ryusa.study.verdict_words import checks, said, tally
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
 VALUES = {True: (1.4, 1.5, 1.6), False: (2.9, 3.0, 3.1), None: (1.8, 2.0, 2.2)}

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ryusa.build.feeds import seed_of_feed
 from ryusa.build.placement import Placement, at_rest
-from ryusa.build.traffic import seed_of_feed
-from ryusa.casefile.traffic.values import FULLEST, FULLEST_PLANE, share_at_disc, share_in_box
+from ryusa.casefile.feeds.values import FULLEST, FULLEST_PLANE, share_at_disc, share_in_box
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, Traffic
+from ryusa.model.feeds import NONE, Vector
 from ryusa.model.scene import Floats
-from ryusa.model.traffic import NONE, Vector
-from ryusa.model.wall_traffic import corners
+from ryusa.model.wall_feeds import corners
 from ryusa.spelling import nearest_word
 
 _WIDE = 1.0e9  # half the width across a plane scene of the box of an exit [m]

@@ -14,6 +14,7 @@ from ryusa.build.clumps import clumps_of
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
 from ryusa.build.empty import empty
+from ryusa.build.feeds import before_feeding, leaving_row, moving_with, with_feeds
 from ryusa.build.fill import fill
 from ryusa.build.flume import flume
 from ryusa.build.materials import Numbers, densities, materials_of
@@ -26,7 +27,6 @@ from ryusa.build.saltation import saltation
 from ryusa.build.servo import servo_notes
 from ryusa.build.stream import stream_bed, stream_walls
 from ryusa.build.table import table
-from ryusa.build.traffic import before_feeding, leaving_row, moving_with, with_feeds
 from ryusa.build.wall_checks import (
     refuse_crushing_servos,
     refuse_fast_walls,

@@ -9,7 +9,7 @@ from ryusa.build.change import change, replay
 from ryusa.build.servo import pressed_area
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.impact import STABLE
-from ryusa.casefile.traffic.values import (
+from ryusa.casefile.feeds.values import (
     FULLEST,
     FULLEST_PLANE,
     grains_per_second,
@@ -21,7 +21,7 @@ from ryusa.errors import CaseError
 from ryusa.model import FaceKind, Feed, Scene, State
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contact_law import rest_overlap_of, stiffness_key
-from ryusa.model.traffic import NONE
+from ryusa.model.feeds import NONE
 from ryusa.model.wall_shape import WallsAt
 from ryusa.model.walls import ASKED, MOST_SPEED, MOST_TRAVEL, TOWARDS, Ints, face_boxes, largest_speed
 

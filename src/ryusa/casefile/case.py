@@ -8,6 +8,7 @@ from pydantic import Field, PrivateAttr
 from ryusa.casefile.builders.schema import BuildSection
 from ryusa.casefile.contact.schema import ContactSection, RollingSection
 from ryusa.casefile.domain import DomainSection, PlaneSection
+from ryusa.casefile.feeds.schema import ExitSection, FeedSection
 from ryusa.casefile.forms import FormSection
 from ryusa.casefile.grains import GrainsSection
 from ryusa.casefile.materials import MaterialSection, PairSection
@@ -16,7 +17,6 @@ from ryusa.casefile.quantities import Count, Name
 from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
 from ryusa.casefile.section import Section
 from ryusa.casefile.time import TimeSection
-from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.walls import WallSection
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.catalogue import load

@@ -12,6 +12,7 @@ from ryusa.casefile.contact.checks import check_contact, check_expected_speed, c
 from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.domain import check_domain, check_planes
+from ryusa.casefile.feeds.checks import check_traffic
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.grading import check_grading
 from ryusa.casefile.grains import RIVALS as GRAINS_RIVALS
@@ -30,7 +31,6 @@ from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import check_shape
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
 from ryusa.casefile.time import check_time
-from ryusa.casefile.traffic.checks import check_traffic
 from ryusa.casefile.walls import check_meshes, check_walls
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS

@@ -7,6 +7,7 @@ from ryusa.casefile.contact.impact import impact_rows
 from ryusa.casefile.contact.rows import contact_rows, damping_rows
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.estimate import cost_rows
+from ryusa.casefile.feeds.rows import traffic_rows
 from ryusa.casefile.films import film_rows
 from ryusa.casefile.grains import grain_rows
 from ryusa.casefile.laws import law_rows
@@ -17,7 +18,6 @@ from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import shape_rows
 from ryusa.casefile.time import time_rows
-from ryusa.casefile.traffic.rows import traffic_rows
 from ryusa.casefile.walls import wall_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 

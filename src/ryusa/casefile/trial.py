@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.feeds.values import sedigraph_points
 from ryusa.casefile.read import read
 from ryusa.casefile.row.ends import HYDROGRAPH, STAGE, hydrograph_points, stage_points
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.traffic.values import sedigraph_points
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ryusa.catalogue import BEDS, MEASURES, PICTURES, QUANTITIES, SIDES, PictureEntry, called, load
-from ryusa.cli import chosen
-from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
+from ryusa.cli import measure_options
+from ryusa.cli.measure_options import entry_of, keywords, listed, of_row, refuse_swapped, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -28,21 +28,21 @@ MOST = 1.0e6  # bytes of a CSV that is written unasked
 SUFFIXES = (".png", ".svg", ".pdf")
 SAMPLE = 500  # rows from which its size is estimated
 COLOURS = ("speed", "spin", "none")
-CHECKS: dict[str, chosen.Check] = {
-    "--at": chosen.time,
-    "--bed": chosen.one_of(BEDS),
-    "--begin": chosen.time,
-    "--colour": chosen.one_of(COLOURS),
+CHECKS: dict[str, measure_options.Check] = {
+    "--at": measure_options.time,
+    "--bed": measure_options.one_of(BEDS),
+    "--begin": measure_options.time,
+    "--colour": measure_options.one_of(COLOURS),
     "--dam": lambda _name, value, _results: value,
-    "--end": chosen.time,
-    "--exaggeration": chosen.in_range(0.1, 100.0),
+    "--end": measure_options.time,
+    "--exaggeration": measure_options.in_range(0.1, 100.0),
     "--grain": lambda _name, value, results: grains_of(value, results),
     "--lane": lambda _name, value, _results: value,
     "--length": _length,
-    "--quantity": chosen.one_of(QUANTITIES),
-    "--reach": chosen.reach,
-    "--side": chosen.one_of(SIDES),
-    "--window": chosen.window,
+    "--quantity": measure_options.one_of(QUANTITIES),
+    "--reach": measure_options.reach,
+    "--side": measure_options.one_of(SIDES),
+    "--window": measure_options.window,
     "--wall": lambda _name, value, _results: value,
 }
 

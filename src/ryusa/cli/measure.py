@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
-from ryusa.cli import chosen
-from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
+from ryusa.cli import measure_options
+from ryusa.cli.measure_options import entry_of, keywords, listed, of_row, refuse_swapped, taking
 from ryusa.cli.options import open_run, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from ryusa.measure import Averages
     from ryusa.results import Results
 
-CHECKS: dict[str, chosen.Check] = {
-    "--at": chosen.time,
-    "--bed": chosen.one_of(BEDS),
-    "--begin": chosen.time,
+CHECKS: dict[str, measure_options.Check] = {
+    "--at": measure_options.time,
+    "--bed": measure_options.one_of(BEDS),
+    "--begin": measure_options.time,
     "--dam": lambda _name, value, _results: value,
-    "--end": chosen.time,
-    "--fps": chosen.in_range(1.0, 1.0e6),
+    "--end": measure_options.time,
+    "--fps": measure_options.in_range(1.0, 1.0e6),
     "--material": lambda _name, value, _results: value,
-    "--layer": chosen.in_range(0.01, 100.0),
-    "--reach": chosen.reach,
-    "--resolution": chosen.in_range(0.001, 1.0),
-    "--rise": chosen.in_range(0.0, 100.0),
-    "--settle": chosen.time,
-    "--side": chosen.one_of(SIDES),
-    "--threshold": chosen.length,
-    "--window": chosen.window,
+    "--layer": measure_options.in_range(0.01, 100.0),
+    "--reach": measure_options.reach,
+    "--resolution": measure_options.in_range(0.001, 1.0),
+    "--rise": measure_options.in_range(0.0, 100.0),
+    "--settle": measure_options.time,
+    "--side": measure_options.one_of(SIDES),
+    "--threshold": measure_options.length,
+    "--window": measure_options.window,
 }
 
 

@@ -83,7 +83,7 @@ def page_size(size: str, runs: int = 1) -> float:
 
 def write_page(text: str, path: Path, browser: bool) -> None:
     """Write a page, name its file, and open it if asked to."""
-    from ryusa.results.shown import Page
+    from ryusa.results.presentation import Page
 
     Page(text).save(path)
     typer.echo(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB): open it in a browser")

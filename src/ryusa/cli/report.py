@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ryusa.cli.chosen import reach as reach_of
+from ryusa.cli.measure_options import reach as reach_of
 from ryusa.cli.options import Browser, Quiet, in_unit, open_run, page_file, page_size, write_page
 from ryusa.errors import CaseError
 

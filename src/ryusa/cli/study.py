@@ -143,8 +143,8 @@ def carried_out(
     With an earlier ledger, the new one says which verdicts changed since.
     """
     from ryusa.study import ProgressLines
-    from ryusa.study.kept import kept_at
     from ryusa.study.ledger import make
+    from ryusa.study.ledger_file import kept_at
     from ryusa.study.page import write
 
     if names is not None and json is not None:
@@ -258,7 +258,7 @@ def _print(ledger: "Ledger") -> None:
 def print_counts(ledger: "Ledger") -> None:
     """How many findings have each verdict, and how many of these hold in most settings."""
     from ryusa.study.entry import plain_entry
-    from ryusa.study.said import checks, tally
+    from ryusa.study.verdict_words import checks, tally
 
     entries = [plain_entry(ledger.study, one, ledger.folder) for one in ledger.entries]
     lines = [

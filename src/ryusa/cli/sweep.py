@@ -25,7 +25,7 @@ from ryusa.cli.study import (
 
 if TYPE_CHECKING:
     from ryusa.campaigns.sweep import SweepPlan
-    from ryusa.campaigns.sweep.carry import Sweep
+    from ryusa.campaigns.sweep.execution import Sweep
 
 MOST_LISTED = 50  # settings
 MOST_BESIDE = 2  # keys that stand beside a quantity; of more, the number of the setting does
@@ -103,7 +103,7 @@ def sweep(
     """  # fmt: skip
     # One function: two thirds of it are the options of the command, which typer reads from its signature.
     from ryusa.campaigns.sweep import carry_out_sweep, planned, write_sweep
-    from ryusa.campaigns.sweep.asked import axes_of_words
+    from ryusa.campaigns.sweep.definition import axes_of_words
     from ryusa.campaigns.sweep.design import GRID, design_of
     from ryusa.campaigns.sweep.folder import refuse_folder
     from ryusa.study import ProgressLines

@@ -78,7 +78,7 @@ def validate(
     is given again. Exits with 4 where something lies outside its tolerance.
     """
     from ryusa.study import Outcome
-    from ryusa.study.kept import as_registered, read_ledger
+    from ryusa.study.ledger_file import as_registered, read_ledger
     from ryusa.study.verdicts import refuse_other_study
 
     find_studies()

@@ -5,14 +5,14 @@ from matplotlib.figure import Figure
 
 from ryusa.figures import style
 from ryusa.measure.passages import Passages
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 
 DASHED = (0, (4, 1.5))
 
 
 @style.house
 def passages(found: Passages) -> Figure:
-    """Draw the mass that passed since the begin of the window, and below it the debts, where there are any.
+    """Draw the mass that passed since the begin of the window, and below it the backlog, where there are any.
 
     Feeds are drawn with full lines, exits with broken ones.
     """

@@ -14,7 +14,7 @@ from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import Average, average, ratio, standard_error
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import ColumnRow
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.spelling import known_word, nearest_word
 
 FEWEST = 3  # segments with a deposit to which a line is fitted

@@ -11,7 +11,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import ratio
 from ryusa.measure.table import Averaged, Averages
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 
 Ints = NDArray[np.int64]
 ENTERED, LEFT = "rate_in", "rate_out"

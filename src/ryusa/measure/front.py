@@ -12,7 +12,7 @@ from ryusa.measure.statistics import Average, ratio
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import Scene
 from ryusa.model.arrays import Bools
-from ryusa.model.traffic import IN, OUT, PASSAGE
+from ryusa.model.feeds import IN, OUT, PASSAGE
 
 FAR = 5.0  # distance from its first place from which a grain counts, in mean diameters
 SHARE = 0.05  # of the volume, beyond the front

@@ -13,11 +13,11 @@ from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import Average, average, ratio
 from ryusa.measure.steadiness import BLOCKS
 from ryusa.measure.table import Averaged, Averages
-from ryusa.model.traffic import IN, NONE, OUT, Population
+from ryusa.model.feeds import IN, NONE, OUT, Population
 from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
-SEEN = 400  # instants of the window at which debts are given
+SEEN = 400  # instants of the window at which the backlog is given
 _SLACK = 1.0e-6  # of an interval between two instants, for a time that is one of them
 
 
@@ -62,7 +62,7 @@ class Passages(Averaged):
     records : the passages, dtype model.PASSAGE, in order of time.
     through : name of the feed or the exit of each.
     gates : each feed, then each exit.
-    instants : times at which debts are given [s], shape (k,).
+    instants : times at which the backlog is given [s], shape (k,).
     n_begin, m_begin, n_end, m_end : grains that are there at both ends of the window, and their mass [kg];
         at the end is there what was there at the begin, and came, less what left, to the last bit.
     averages : rates over the window and mean speeds of the grains that left, with their errors.
@@ -97,7 +97,7 @@ class Passages(Averaged):
 
 
 def passages(run: Run, begin: float | None = None, end: float = math.inf) -> Passages:
-    """Every grain that a feed brought or an exit took, and rates, totals and debts of each.
+    """Every grain that a feed brought or an exit took, and rates, totals and backlog of each.
 
     Parameters
     ----------

@@ -3,13 +3,13 @@
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
+from ryusa.model.feeds import PASSAGE, Arrivals, Exit, Feed, Traffic
 from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
 from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
-from ryusa.model.traffic import PASSAGE, Arrivals, Exit, Feed, Traffic
 from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [

@@ -32,7 +32,7 @@ class EndKind(IntEnum):
     WALL = 0  # nothing passes
     LEVEL = 1  # water at rest with a given surface
     FREE_FALL = 2  # a drop, no water
-    UNIFORM = 3  # the depth of the last segment; where the flow leaves faster than waves, or is uniform
+    UNIFORM = 3  # the depth of the last segment; where the flow leaves supercritical, or is uniform
     DISCHARGE = 4  # a given discharge enters
 
 
@@ -44,8 +44,8 @@ class RowEnd:
     level: float = NAN  # height of the surface for LEVEL [m]
     discharge: float = NAN  # for DISCHARGE [m2/s]
     profile: Floats | None = None  # its speeds to any scale, shape (n,); None: uniform
-    depth: float = NAN  # of the entering water [m], where it is faster than waves; nan: that of the row
-    developed: bool = False  # profile, and the depth of a flow faster than waves, of steady flow
+    depth: float = NAN  # of the entering water [m], where it is supercritical; nan: that of the row
+    developed: bool = False  # profile, and the depth of supercritical flow, of steady flow
     course: Course | None = None  # of level or discharge over time; the two above are those at the start
 
 

@@ -30,9 +30,9 @@ from ryusa.laws.families import (
 )
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
+from ryusa.model.feeds import Traffic
 from ryusa.model.rigid_bodies import RigidBodies
 from ryusa.model.row import ColumnRow
-from ryusa.model.traffic import Traffic
 from ryusa.model.walls import Walls
 from ryusa.printed import ByShape
 

@@ -15,7 +15,7 @@ from ryusa.report.contents import Drawing, RunContents, draw_picture, explain_va
 from ryusa.report.covered import conditions, not_covered, rests_on
 from ryusa.report.question import question_of
 from ryusa.results import Results
-from ryusa.results.shown import _saved
+from ryusa.results.presentation import _saved
 from ryusa.running.resume import changes_of
 from ryusa.study.html import template
 from ryusa.version import __version__

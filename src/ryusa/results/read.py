@@ -24,9 +24,7 @@ from ryusa.results import schema
 from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import Part
-from ryusa.results.row import RowFrames, read_row
-from ryusa.results.scene_file import read_scene
-from ryusa.results.shown import (
+from ryusa.results.presentation import (
     FilmFile,
     Page,
     drawn,
@@ -38,6 +36,8 @@ from ryusa.results.shown import (
     view_of,
     xarray_of,
 )
+from ryusa.results.row import RowFrames, read_row
+from ryusa.results.scene_file import read_scene
 from ryusa.results.water import WaterFrames, read_water
 
 if TYPE_CHECKING:

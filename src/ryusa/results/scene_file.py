@@ -12,8 +12,8 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
+from ryusa.model.feeds import NONE, Arrivals, Traffic
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
-from ryusa.model.traffic import NONE, Arrivals, Traffic
 from ryusa.model.walls import N_MOTION, N_RIGID, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 from ryusa.results.row_file import ROW, dataset_names, row_arrays, row_from, row_scalars

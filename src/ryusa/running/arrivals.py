@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.model import PASSAGE, Scene
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import IN, NONE, Arrivals
+from ryusa.model.feeds import IN, NONE, Arrivals
 from ryusa.running.insertion import ATTEMPTS, Neighbours
 from ryusa.water.protocol import Fluid
 

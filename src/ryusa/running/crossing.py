@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ryusa.model import PASSAGE, Exit, Scene, State, Traffic
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import OUT
-from ryusa.model.wall_traffic import carrier_of
+from ryusa.model.feeds import OUT
+from ryusa.model.wall_feeds import carrier_of
 from ryusa.running.insertion import wrapped
 
 Ints = NDArray[np.int64]

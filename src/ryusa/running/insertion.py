@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ryusa.model import BodyState, Feed, Scene
 from ryusa.model.arrays import Floats
+from ryusa.model.wall_feeds import carrier_of, corners
 from ryusa.model.wall_shape import WallsAt
-from ryusa.model.wall_traffic import carrier_of, corners
 from ryusa.model.walls import corners_of_box
 from ryusa.water.eddies import draw
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ryusa.engine import registry
 from ryusa.errors import CheckpointError
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 from ryusa.results import Results, schema
 from ryusa.running.checkpoint import read_checkpoint
 from ryusa.running.energy_terms import energy_lines

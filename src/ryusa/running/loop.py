@@ -20,6 +20,7 @@ from ryusa.running.checkpoint_scheduler import CheckpointScheduler
 from ryusa.running.compiling import compiling_told
 from ryusa.running.crossing import of_heads
 from ryusa.running.disk import retry_when_full
+from ryusa.running.feeds import TrafficRule
 from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import StopSignal, catch_signals
@@ -33,7 +34,6 @@ from ryusa.running.snapshot import engine_block
 from ryusa.running.stops import RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
-from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
 from ryusa.running.water import advanced, changed, finish_before, snapshot, started
 from ryusa.water.protocol import Fluid

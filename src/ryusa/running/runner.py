@@ -21,6 +21,7 @@ from ryusa.running.case_files import files_beside, made_files, origin_of_reach, 
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
 from ryusa.running.disk import disk_errors, write_atomically
+from ryusa.running.feeds import TrafficRule
 from ryusa.running.folder import (
     as_read_back,
     is_run,
@@ -43,7 +44,6 @@ from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.servo import ServoRule
 from ryusa.running.stops import Stop, refuse_stop
 from ryusa.running.timeline import Change, refuse_changes
-from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
 
 if TYPE_CHECKING:

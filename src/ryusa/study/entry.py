@@ -8,8 +8,8 @@ from ryusa.figures.comparison import Curve
 from ryusa.study.interval import Interval
 from ryusa.study.judge import Finding, Outcome, Trial
 from ryusa.study.origin import json_number
-from ryusa.study.said import plain_count, plain_effect
 from ryusa.study.study import Study
+from ryusa.study.verdict_words import plain_count, plain_effect
 
 DIGITS = 6  # significant digits of curves in the JSON file
 MOST = 200  # largest number of points of a curve in the JSON file

@@ -6,10 +6,10 @@ from typing import Any
 
 from ryusa.study.html import embedded, is_wide, template, write_page
 from ryusa.study.interval import short
-from ryusa.study.kept import joined, kept_at, write_ledger
 from ryusa.study.ledger import Ledger
-from ryusa.study.said import checks, tally
+from ryusa.study.ledger_file import joined, kept_at, write_ledger
 from ryusa.study.study import LOOKS, Study, limits_in_words
+from ryusa.study.verdict_words import checks, tally
 
 WHOLE_TABLE = 60  # rows; of a longer table the page shows the first HEAD
 HEAD = 20

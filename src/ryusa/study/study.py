@@ -9,8 +9,8 @@ from ryusa.results import Results
 from ryusa.study.judge import Finding, Outcome
 from ryusa.study.plan import Level, Plan
 from ryusa.study.registration import Registration
-from ryusa.study.said import SaidVerdict, said
 from ryusa.study.task import CaseRun, Task
+from ryusa.study.verdict_words import SaidVerdict, said
 
 Found = Mapping[Any, Any]  # task -> result of `measure`, or the arrays of a calculation
 

@@ -60,7 +60,7 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
 
     Notes
     -----
-    Where the bottom falls and normal flow is faster than waves, water enters at normal depth unless a depth
+    Where the bottom falls and normal flow is supercritical, water enters at normal depth unless a depth
     is given; else the row finds the depth. A developed profile is that of steady flow as deep as this, as
     normal flow, or as the row at its start. Depth and profile count from the bed of grains where one lies.
     """

@@ -11,7 +11,7 @@ from ryusa.laws.debris import discharge_over_bed, equilibrium_concentration, run
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, long_section, row_of
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 from ryusa.results import Results
 from ryusa.results.row import RowFrames
 from ryusa.study import (

@@ -10,7 +10,7 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import IN, OUT
+from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
 from ryusa.results.row import RowFrames
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, case_run, comparison, misfit

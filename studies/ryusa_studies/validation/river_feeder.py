@@ -13,7 +13,7 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import IN
+from ryusa.model.feeds import IN
 from ryusa.results import Results
 from ryusa.running.runner import run
 from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit

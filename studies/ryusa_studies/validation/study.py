@@ -9,8 +9,8 @@ from ryusa.errors import CaseError
 from ryusa.study import Finding, Level, Outcome, Study, StudyPart
 from ryusa.study.page import checks_of, interval
 from ryusa.study.registration import Registration
-from ryusa.study.said import checks, tally
 from ryusa.study.study import limits_in_words
+from ryusa.study.verdict_words import checks, tally
 from ryusa_studies.validation.sampling import CLOSED, sampling_lines
 
 NAMES = (

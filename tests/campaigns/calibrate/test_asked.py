@@ -2,7 +2,7 @@
 
 import pytest
 
-from ryusa.campaigns.calibrate.asked import ObservedValue
+from ryusa.campaigns.calibrate.definition import ObservedValue
 from ryusa.campaigns.calibrate.study_file import read_calibration
 from ryusa.cases import case_path
 from ryusa.errors import CaseError

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ryusa.campaigns.calibrate.asked import Observation, Target
 from ryusa.campaigns.calibrate.coverage import BEYOND, WRONG, Counted, chance
+from ryusa.campaigns.calibrate.definition import Observation, Target
 from ryusa.campaigns.calibrate.design import filling_points
 from ryusa.campaigns.calibrate.emulator import emulate
 from ryusa.campaigns.calibrate.extend import PriorExtension, extended_prior, points_beyond

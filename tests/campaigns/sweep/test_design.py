@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ryusa.campaigns.sweep.asked import axes_of, axes_of_words, is_sweep_file, read_sweep
+from ryusa.campaigns.sweep.definition import axes_of, axes_of_words, is_sweep_file, read_sweep
 from ryusa.campaigns.sweep.design import Span, SweepAxis, design_of, span_of
 from ryusa.errors import CaseError
 

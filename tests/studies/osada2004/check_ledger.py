@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from ryusa.study.kept import read_ledger
+from ryusa.study.ledger_file import read_ledger
 from ryusa_studies.osada2004.claims import CLAIMS
 from ryusa_studies.osada2004.study import PAPER
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ryusa.campaigns.calibrate.asked import CalibrationAsked, Observation, Target
-from ryusa.campaigns.calibrate.carry import Calibration, Predicted, carry_out_calibration, refuse_truths
+from ryusa.campaigns.calibrate.definition import CalibrationAsked, Observation, Target
+from ryusa.campaigns.calibrate.execution import Calibration, Predicted, carry_out_calibration, refuse_truths
 from ryusa.campaigns.calibrate.page import write_calibration
 from ryusa.campaigns.calibrate.prior import Prior
 from ryusa.campaigns.calibrate.study_file import read_calibration

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import binom
 
-from ryusa.campaigns.calibrate.asked import ObservedValue, Target
+from ryusa.campaigns.calibrate.definition import ObservedValue, Target
 from ryusa.campaigns.calibrate.emulator import Emulator
 from ryusa.campaigns.calibrate.posterior import LEAST, ONE_SIGMA, TWO_SIGMA, Seen, sample_posterior
 from ryusa.campaigns.calibrate.prior import Prior, in_cube

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ryusa.campaigns.calibrate.carry import FORMAT, Calibration, Predicted
+from ryusa.campaigns.calibrate.execution import FORMAT, Calibration, Predicted
 from ryusa.campaigns.calibrate.pictures import PARTS, drawn_calibration
 from ryusa.campaigns.calibrate.printed import (
     correlation_table,

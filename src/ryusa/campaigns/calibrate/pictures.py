@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.campaigns.calibrate.carry import Calibration
 from ryusa.campaigns.calibrate.design import filling_points
+from ryusa.campaigns.calibrate.execution import Calibration
 from ryusa.campaigns.calibrate.sentences import shown
 from ryusa.campaigns.sweep.part import short_names
 from ryusa.campaigns.sweep.pictures import printed_unit

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from ryusa.campaigns.calibrate.carry import Calibration, Predicted
 from ryusa.campaigns.calibrate.coverage import Coverage
+from ryusa.campaigns.calibrate.execution import Calibration, Predicted
 from ryusa.campaigns.calibrate.sentences import move_words, shown
 from ryusa.campaigns.calibrate.tables import printed_interval, printed_number
 from ryusa.campaigns.sweep.pictures import printed_unit

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.campaigns.calibrate.asked import CalibrationAsked, Target
+from ryusa.campaigns.calibrate.definition import CalibrationAsked, Target
 from ryusa.campaigns.calibrate.design import settings_of
 from ryusa.campaigns.calibrate.heaps import read_test, refuse_other_test
 from ryusa.campaigns.calibrate.prior import DIGITS, Prior

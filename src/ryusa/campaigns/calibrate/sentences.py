@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ryusa.campaigns.calibrate.asked import Observation
+from ryusa.campaigns.calibrate.definition import Observation
 from ryusa.campaigns.calibrate.extend import PriorExtension
 from ryusa.campaigns.calibrate.heaps import OTHER
 from ryusa.campaigns.calibrate.prior import Prior

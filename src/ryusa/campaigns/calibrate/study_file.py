@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ryusa.campaigns.calibrate.asked import CalibrationAsked, Observation, Target
+from ryusa.campaigns.calibrate.definition import CalibrationAsked, Observation, Target
 from ryusa.campaigns.calibrate.heaps import read_test
 from ryusa.campaigns.calibrate.prior import LOG, NORMAL, UNIFORM, Prior
-from ryusa.campaigns.sweep.asked import text_of
+from ryusa.campaigns.sweep.definition import text_of
 from ryusa.campaigns.sweep.design import span_of
 from ryusa.casefile.files import toml_text
 from ryusa.catalogue import MEASURES

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ryusa.campaigns.calibrate.asked import Observation
+from ryusa.campaigns.calibrate.definition import Observation
 from ryusa.campaigns.calibrate.posterior import ONE_SIGMA, TWO_SIGMA, Posterior
 from ryusa.campaigns.calibrate.prior import Prior
 from ryusa.campaigns.calibrate.sentences import status

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ryusa.campaigns.sweep.asked import Over, axes_of, is_sweep_file, listed, read_sweep
-from ryusa.campaigns.sweep.carry import Sweep, carry_out_sweep
+from ryusa.campaigns.sweep.definition import Over, axes_of, is_sweep_file, listed, read_sweep
 from ryusa.campaigns.sweep.design import GRID, LIST, SweepDesign, design_of
+from ryusa.campaigns.sweep.execution import Sweep, carry_out_sweep
 from ryusa.campaigns.sweep.page import write_sweep
 from ryusa.campaigns.sweep.plan import SweepPlan, plan_sweep
 from ryusa.errors import CaseError

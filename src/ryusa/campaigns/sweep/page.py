@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup, escape
 
-from ryusa.campaigns.sweep.carry import CSV, LEDGER, LOG, PAGE, Sweep
+from ryusa.campaigns.sweep.execution import CSV, LEDGER, LOG, PAGE, Sweep
 from ryusa.campaigns.sweep.folder import RUNS, plain_plan
 from ryusa.campaigns.sweep.pictures import Quantity, printed_unit
 from ryusa.measure.statistics import Average

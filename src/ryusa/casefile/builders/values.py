@@ -22,6 +22,7 @@ from ryusa.casefile.builders.schema import (
 )
 from ryusa.casefile.builders.table import made_of, period_of, rows_of_material, table_of
 from ryusa.casefile.column.packed import packed
+from ryusa.casefile.feeds.values import fed_in_all
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
@@ -29,7 +30,6 @@ from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span
 from ryusa.casefile.shape import extent
-from ryusa.casefile.traffic.values import fed_in_all
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case

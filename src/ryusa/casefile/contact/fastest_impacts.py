@@ -12,11 +12,11 @@ from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection,
 from ryusa.casefile.builders.values import fill_cells, room
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import adhesion, is_hertz, law_of, pair_values, stiffness
+from ryusa.casefile.feeds.values import corners_of
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.row.ends import peak_discharge
 from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import critical_depth, deepest, reaches, row_plan, stream
-from ryusa.casefile.traffic.values import corners_of
 from ryusa.casefile.walls import box_of
 from ryusa.casefile.water.values import terminal_velocity, water_speed
 from ryusa.laws import collision, water

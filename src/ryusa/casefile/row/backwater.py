@@ -14,7 +14,7 @@ MOST_STATIONS = 400  # of a backwater
 def backwater(
     up: Floats, dx: float, q: float, below: float, critical: float, g: float, rough: float, nu: float
 ) -> Floats:
-    """Depths of the steady flow of a discharge, as if all of it were slower than waves [m], shape (n,).
+    """Depths of the steady flow of a discharge, as if all of it were subcritical [m], shape (n,).
 
     Parameters
     ----------

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.column.packed import packed
+from ryusa.casefile.feeds.schema import FeedSection
+from ryusa.casefile.feeds.values import corners_of, feed_end, grains_per_second, mean_mass
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import discharge_of, hydrograph_of, width_of
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowDamSection, row_keys
 from ryusa.casefile.row.values import bed_over, bottom_points, crest_of, dam_span, normal_depth, row_plan
-from ryusa.casefile.traffic.schema import FeedSection
-from ryusa.casefile.traffic.values import corners_of, feed_end, grains_per_second, mean_mass
 from ryusa.laws.transport import solid_discharge_smart_jaeggi
 
 if TYPE_CHECKING:

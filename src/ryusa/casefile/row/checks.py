@@ -353,7 +353,7 @@ def _inlet(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]
         return
     if bed_over(case, plan.x)[0] >= reference_diameter(case) or enters_fast(case, q):
         return
-    why = "normal flow is not faster than waves there"
+    why = "normal flow is not supercritical there"
     if reaches(case, q)[0].froude > 1.0:
         why = f"normal depth is less than a cell of {plan.cell:.3g} m"
     yield CaseError(

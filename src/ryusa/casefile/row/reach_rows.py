@@ -26,9 +26,9 @@ def reach_rows(case: "Case") -> list[ExplainRow]:
     share = reach.error / reach.solid_discharge if reach.solid_discharge > 0.0 else math.inf
     known = f"standard error {reach.error:.2g} m2/s, {100.0 * share:.2g} %, of {len(reach.t)} grains"
     froude = reach_froude(case)
-    fast = "faster than waves: nothing in the river acts back on it"
+    fast = "supercritical: nothing in the river acts back on it"
     slow = (
-        "slower than waves: the river's depth at its upper end is its own; where it differs from that of the "
+        "subcritical: the river's depth at its upper end is its own; where it differs from that of the "
         "reach, the load is not that which the flow carries there"
     )
     found = [

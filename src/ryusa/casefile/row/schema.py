@@ -63,7 +63,7 @@ class RowEndSection(Section):
 
     end: End
     """What lies beyond: a wall; water at rest with the surface at `level`; a drop without water; the depth of
-    the last segment, for flow that is uniform or faster than waves; an inlet that keeps `discharge`; or a
+    the last segment, for flow that is uniform or supercritical; an inlet that keeps `discharge`; or a
     reach over an even bed, the finished periodic `run`, that feeds water and grains."""
     level: Length | None = None
     """Height of the surface beyond end = "level", over the x axis."""
@@ -79,7 +79,7 @@ class RowEndSection(Section):
     after the last it stays."""
     depth: PositiveLength | None = None
     """Depth of the water that enters, with end = "discharge" alone; over a bed of grains in the first segment
-    it counts from its top. When not given: that of the row, and where normal flow is faster than waves the
+    it counts from its top. When not given: that of the row, and where normal flow is supercritical the
     normal depth."""
     profile: Literal["developed", "uniform"] = "developed"
     """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every

@@ -11,6 +11,8 @@ from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, built_counts, sizes
 from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.feeds.schema import ExitSection
+from ryusa.casefile.feeds.values import corners_of
 from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.casefile.row.schema import RowSection
@@ -26,8 +28,6 @@ from ryusa.casefile.row.values import (
     walls_of_stream,
 )
 from ryusa.casefile.section import given
-from ryusa.casefile.traffic.schema import ExitSection
-from ryusa.casefile.traffic.values import corners_of
 from ryusa.errors import CaseError
 from ryusa.laws.families import Mixing
 from ryusa.model.arrays import Floats

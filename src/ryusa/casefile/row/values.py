@@ -250,7 +250,7 @@ def normal_depth(case: "Case", q: float, angle: float) -> float:
 
 
 def enters_fast(case: "Case", q: float) -> bool:
-    """Whether a discharge [m2/s] enters upstream at its normal depth: faster than waves, and a cell deep."""
+    """Whether a discharge [m2/s] enters upstream at its normal depth: supercritical, and a cell deep."""
     first = reaches(case, q)[0]
     return first.froude > 1.0 and first.normal > THINNEST * cell_of(case)
 
@@ -333,7 +333,7 @@ def highest_water(case: "Case", plan: RowPlan) -> float:
 
 
 def jumping(case: "Case", q: float) -> list[Reach]:
-    """Reaches where a discharge [m2/s] is faster than waves and has slower water somewhere below it."""
+    """Reaches where a discharge [m2/s] is supercritical and has subcritical water somewhere below it."""
     keys, found = _row(case), reaches(case, q)
     held = keys.downstream is not None and keys.downstream.end in ("wall", "level")
     return [

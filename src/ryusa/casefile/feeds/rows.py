@@ -2,8 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.rows import ExplainRow, count, number, word
-from ryusa.casefile.traffic.values import (
+from ryusa.casefile.feeds.values import (
     FULLEST,
     FULLEST_PLANE,
     fed_count,
@@ -14,6 +13,7 @@ from ryusa.casefile.traffic.values import (
     share_filled,
     unit_of,
 )
+from ryusa.casefile.rows import ExplainRow, count, number, word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case

@@ -11,16 +11,16 @@ from ryusa.build.reach import reach_feed
 from ryusa.build.sizes import draw
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.feeds.schema import ExitSection, FeedSection
+from ryusa.casefile.feeds.values import fed_amount, fed_count, feed_begin, feed_end, sedigraph_of, unit_of
 from ryusa.casefile.grains import mass, sized_as
 from ryusa.casefile.materials import of_material
 from ryusa.casefile.row.reach_source import fed_by_reach
-from ryusa.casefile.traffic.schema import ExitSection, FeedSection
-from ryusa.casefile.traffic.values import fed_amount, fed_count, feed_begin, feed_end, sedigraph_of, unit_of
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic
+from ryusa.model.feeds import NONE
 from ryusa.model.scene import Floats
-from ryusa.model.traffic import NONE
-from ryusa.model.wall_traffic import speed_of_feed
+from ryusa.model.wall_feeds import speed_of_feed
 from ryusa.model.walls import ASKED, INTERVAL
 
 _WIDE = 1.0e9  # half the width across a plane scene of the box of an exit [m]

@@ -12,9 +12,9 @@ from ryusa.study.judge import Outcome, base_outcome_of, outcome_of
 from ryusa.study.ledger import FORMAT
 from ryusa.study.origin import json_number
 from ryusa.study.registration import RegisteredBand, RegisteredClaim, outcome_by
-from ryusa.study.said import plain_count, plain_effect
 from ryusa.study.study import Study
 from ryusa.study.verdict import Effect, first_reading, held_of, robustness, settings_within
+from ryusa.study.verdict_words import plain_count, plain_effect
 
 COMPRESSED = ".xz"
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.course import Points, points_of
+from ryusa.casefile.feeds.schema import FeedSection, read_rate
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass, mean_cube, sized_as
 from ryusa.casefile.row.reach_source import fed_by_reach_in_all
-from ryusa.casefile.traffic.schema import FeedSection, read_rate
 from ryusa.model.arrays import Floats
 from ryusa.model.course import Course
-from ryusa.model.wall_traffic import corners_of_disc
+from ryusa.model.wall_feeds import corners_of_disc
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case

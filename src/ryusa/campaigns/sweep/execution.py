@@ -15,7 +15,7 @@ from ryusa.formats.parquet import need_pyarrow, write_rows_as_parquet
 from ryusa.measure import write_csv
 from ryusa.notebook import html_table
 from ryusa.results import Results
-from ryusa.results.shown import needed
+from ryusa.results.presentation import needed
 from ryusa.running import provenance
 from ryusa.study.cost import estimate_cost, refuse_if_too_big
 from ryusa.study.executors import RunExecutor

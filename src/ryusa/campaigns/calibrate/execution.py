@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.campaigns.calibrate.asked import CalibrationAsked, ObservedValue, Target
 from ryusa.campaigns.calibrate.coverage import Coverage, cover
+from ryusa.campaigns.calibrate.definition import CalibrationAsked, ObservedValue, Target
 from ryusa.campaigns.calibrate.design import filling_points, next_points
 from ryusa.campaigns.calibrate.emulator import Emulator, emulate, need_sklearn
 from ryusa.campaigns.calibrate.extend import PriorExtension, extended_prior, mark_limits, points_beyond
@@ -25,7 +25,7 @@ from ryusa.campaigns.sweep.folder import refuse_other_plan
 from ryusa.campaigns.sweep.part import SweepRun
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
-from ryusa.results.shown import needed
+from ryusa.results.presentation import needed
 from ryusa.running import provenance
 from ryusa.running.folder import write_json
 from ryusa.study.executors import RunExecutor

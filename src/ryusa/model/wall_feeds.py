@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.model.arrays import Floats
+from ryusa.model.feeds import NONE, Feed
 from ryusa.model.scene import Scene
-from ryusa.model.traffic import NONE, Feed
 from ryusa.model.walls import MOST_SPEED, Carrier, speed_of
 
 

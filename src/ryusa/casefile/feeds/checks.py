@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
 from ryusa.casefile.builders.values import periodic, size_range, sizes
 from ryusa.casefile.course import faults_of_course
-from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.section import given
-from ryusa.casefile.shape import extent
-from ryusa.casefile.traffic.schema import ExitSection, FeedSection
-from ryusa.casefile.traffic.values import (
+from ryusa.casefile.feeds.schema import ExitSection, FeedSection
+from ryusa.casefile.feeds.values import (
     FULLEST,
     FULLEST_PLANE,
     end_of_total,
@@ -25,6 +22,9 @@ from ryusa.casefile.traffic.values import (
     share_filled,
     unit_of,
 )
+from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.section import given
+from ryusa.casefile.shape import extent
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
 

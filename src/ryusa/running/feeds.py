@@ -1,4 +1,4 @@
-"""Grains that enter and leave during a run: at fixed steps, with debts where a feed is full."""
+"""Grains that enter and leave during a run: at fixed steps, with a backlog where a feed is full."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -12,8 +12,8 @@ from ryusa.engine.shared.passages import Entering, everywhere, placed, removed
 from ryusa.errors import CheckpointError
 from ryusa.model import PASSAGE, Scene, State
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import GONE, IN, NONE, PRESENT, WAITING, Population, Traffic
-from ryusa.model.wall_traffic import carrier_of, corners, speed_of_feed
+from ryusa.model.feeds import GONE, IN, NONE, PRESENT, WAITING, Population, Traffic
+from ryusa.model.wall_feeds import carrier_of, corners, speed_of_feed
 from ryusa.model.walls import BEGIN
 from ryusa.running.arrivals import arriving, listed
 from ryusa.running.checkpoint import CheckpointBlock
@@ -59,7 +59,7 @@ class TrafficRule:
     traffic : feeds and exits.
     population : which grains are there, and which wait.
     entered, left : number of grains by feed and by exit so far.
-    said : for each feed, whether a debt has been reported.
+    said : for each feed, whether a backlog has been reported.
     """
 
     traffic: Traffic
@@ -273,7 +273,7 @@ class TrafficRule:
                 return row, place, q
         return row, None, _UPRIGHT
 
-    def debts(self, step: int, t: float) -> list[tuple[int, float]]:
+    def backlogs(self, step: int, t: float) -> list[tuple[int, float]]:
         """Number and mass [kg] of the grains that found no place at each feed, at the last instant."""
         population = self.population
         m = self._scene.of_heads()[1]
@@ -288,7 +288,7 @@ class TrafficRule:
     def news(self, step: int, t: float) -> list[str]:
         """Feeds that are full for the first time, one line each."""
         found: list[str] = []
-        for k, (count, mass) in enumerate(self.debts(step, t)):
+        for k, (count, mass) in enumerate(self.backlogs(step, t)):
             if count and not self.said[k]:
                 self.said[k] = True
                 name = self.traffic.feeds[k].name
@@ -296,18 +296,18 @@ class TrafficRule:
         return found
 
     def enter(self, numbers: dict[str, Any], step: int, t: float) -> None:
-        """Enter the numbers of all feeds and exits, and their debts as warnings, in those of summary.json."""
-        debts = self.debts(step, t)
+        """Enter the numbers of all feeds and exits, and backlogs as warnings, in those of summary.json."""
+        backlogs = self.backlogs(step, t)
         feeds = [
             {"name": one.name, "entered": int(entered), "due": count, "due_mass": mass}
-            for one, entered, (count, mass) in zip(self.traffic.feeds, self.entered, debts, strict=True)
+            for one, entered, (count, mass) in zip(self.traffic.feeds, self.entered, backlogs, strict=True)
         ]
         exits = [{"name": one.name, "left": int(self.left[k])} for k, one in enumerate(self.traffic.exits)]
         numbers["traffic"] = {"present": self.n_present, "feeds": feeds, "exits": exits}
         full = [
             f"feed '{one.name}' could not place {_grains(count)} ({mass:.3g} kg) that were due: lower its "
             "rate, or give it more room or more speed"
-            for one, (count, mass) in zip(self.traffic.feeds, debts, strict=True)
+            for one, (count, mass) in zip(self.traffic.feeds, backlogs, strict=True)
             if count
         ]
         numbers["warnings"] = [*numbers["warnings"], *full]
