@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -10,9 +10,6 @@ from ryusa.laws import debris
 from ryusa.laws import transport as laws
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
-
-if TYPE_CHECKING:
-    from ryusa.measure.transport import Transport
 
 BELOW, ABOVE = 4.0, 4.0  # how far the lines reach to either side of a run's tau_star, as factors
 LEAST, MOST = 0.03, 1.0  # and how far at least
@@ -48,7 +45,26 @@ def predicted(tau_star: float) -> dict[str, float]:
     return {name: law(tau_star) for name, law in _LAWS.items()}
 
 
-def classical(run: Run, found: "Transport") -> list[FormulaCurve]:
+class MeasuredShear(Protocol):
+    """What the lines of formulae need of a measured transport, as `measure.transport` gives it."""
+
+    @property
+    def t(self) -> Floats:
+        """Times of the frames [s]."""
+        ...
+
+    @property
+    def tau_star(self) -> float:
+        """Shields number of the bed [-]."""
+        ...
+
+    @property
+    def excess(self) -> float:
+        """Submerged specific density of the grains, sigma/rho - 1 [-]."""
+        ...
+
+
+def classical(run: Run, found: MeasuredShear) -> list[FormulaCurve]:
     """Meyer-Peter & Mueller, Wong & Parker, Ashida & Michiue, and Egashira where the run has a slope.
 
     Parameters

@@ -23,18 +23,9 @@ from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
 from ryusa.water.row_energy import EnergyArrays
 from ryusa.water.row_inlet import NO_INFLOW
+from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
 from ryusa.water.row_station import StationArrays
-from ryusa.water.row_step import (
-    COURANT_MET,
-    FAULT_AT,
-    N_SCALARS,
-    STEPS,
-    RowEnds,
-    RowGrains,
-    RowMatrix,
-    RowShape,
-    RowWater,
-)
+from ryusa.water.row_step import COURANT_MET, FAULT_AT, N_SCALARS, STEPS
 from ryusa.water.row_step import advance_row as _advance
 from ryusa.water.solve import FAULTS
 

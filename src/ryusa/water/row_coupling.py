@@ -21,7 +21,7 @@ from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_inlet import bed_thickness
-from ryusa.water.row_step import RowEnds
+from ryusa.water.row_layout import RowEnds
 from ryusa.water.row_threads import RowThreads
 
 _SETTLED = 0.7  # of the packed concentration; a bed with less is as it was laid, and settles

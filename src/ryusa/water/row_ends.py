@@ -8,7 +8,7 @@ from ryusa.laws.families import Drive
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind, RowEnd
 from ryusa.water.row import ends_of
-from ryusa.water.row_step import RowEnds
+from ryusa.water.row_layout import RowEnds
 from ryusa.water.steady import steady
 
 ALIKE = 0.01  # of the range of a hydrograph: profile and depth of an inlet are found anew for such a change

@@ -8,7 +8,7 @@ the height of its surface. Derivation: design/0027.
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,10 +18,8 @@ from ryusa.model.row_energy import N_ROW_TERM, RowTerm
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel, sums
 from ryusa.water.momentum_balance import GRADIENT, StepWorkspace
+from ryusa.water.row_layout import RowShape, RowWater
 from ryusa.water.time_step import distribute_water
-
-if TYPE_CHECKING:
-    from ryusa.water.row_step import RowShape, RowWater
 
 KINETIC, POTENTIAL = int(RowTerm.KINETIC), int(RowTerm.POTENTIAL)
 GRAVITY, DRIVER = int(RowTerm.GRAVITY), int(RowTerm.DRIVER)
@@ -51,7 +49,7 @@ class EnergyArrays(NamedTuple):
 
 
 @sums
-def kinetic_at(p: ColumnParameters, shape: "RowShape", water: "RowWater", j: int) -> float:
+def kinetic_at(p: ColumnParameters, shape: RowShape, water: RowWater, j: int) -> float:
     """Kinetic energy of the water at an open station, per width [J/m]; 0 at others."""
     if shape.kind[j] != OPEN:
         return 0.0
@@ -62,7 +60,7 @@ def kinetic_at(p: ColumnParameters, shape: "RowShape", water: "RowWater", j: int
 
 
 @sums
-def add_held(p: ColumnParameters, shape: "RowShape", water: "RowWater", times: float, books: Floats) -> None:
+def add_held(p: ColumnParameters, shape: RowShape, water: RowWater, times: float, books: Floats) -> None:
     """Add the kinetic and the potential energy of the row to the account, `times` 1 or -1."""
     kinetic, lift = 0.0, 0.0
     for j in range(len(shape.kind)):  # as `kinetic_at`, without a call for each
@@ -90,7 +88,7 @@ def lift_of(p: ColumnParameters, bottom: float, content: Floats, wet: Floats) ->
 
 
 @kernel
-def book_ends(p: ColumnParameters, shape: "RowShape", water: "RowWater", times: float, books: Floats) -> None:
+def book_ends(p: ColumnParameters, shape: RowShape, water: RowWater, times: float, books: Floats) -> None:
     """Add the kinetic energy at the end stations, with `times` -1 and 1 before and after `fill_ends`."""
     last = len(shape.kind) - 1
     if len(shape.bottom) == last:  # two segments beyond the ends, one station more than inner segments
@@ -101,7 +99,7 @@ def book_ends(p: ColumnParameters, shape: "RowShape", water: "RowWater", times: 
 
 @kernel
 def book_displaced(
-    p: ColumnParameters, shape: "RowShape", phi: Floats, water: "RowWater", level: Floats, books: Floats
+    p: ColumnParameters, shape: RowShape, phi: Floats, water: RowWater, level: Floats, books: Floats
 ) -> None:
     """Add the potential energy that the water of each segment gains by grains that have moved.
 
@@ -229,7 +227,7 @@ def book_resistance(
 
 @kernel
 def book_row(
-    p: ColumnParameters, shape: "RowShape", dt: float, driver: float, phi: Floats, water: "RowWater",
+    p: ColumnParameters, shape: RowShape, dt: float, driver: float, phi: Floats, water: RowWater,
     energy: EnergyArrays, total: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Add what gravity, pressure and both ends give in a step, and what surface and falls lose.
@@ -279,7 +277,7 @@ def book_row(
 
 
 @kernel
-def height_at(p: ColumnParameters, shape: "RowShape", water: "RowWater", i: int) -> float:
+def height_at(p: ColumnParameters, shape: RowShape, water: RowWater, i: int) -> float:
     """Height of the surface of a segment over the x axis [m]."""
     return shape.bottom[i] + water.surface[i] - p.z_low
 

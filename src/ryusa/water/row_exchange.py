@@ -19,7 +19,8 @@ from ryusa.water.exchange import FOUR
 from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
 from ryusa.water.row_grain_sums import MetByGrains
-from ryusa.water.row_step import RowEnds, RowShape, RowWater, driving_gradient, fluxes_along
+from ryusa.water.row_layout import RowEnds, RowShape, RowWater
+from ryusa.water.row_step import driving_gradient, fluxes_along
 from ryusa.water.row_sums import (
     BUOYED,
     DRAG_U,

@@ -15,7 +15,7 @@ from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import given_by_grains
 from ryusa.water.exchange import DRY, Ints, cut_grains
 from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays
-from ryusa.water.row_step import RowShape
+from ryusa.water.row_layout import RowShape
 from ryusa.water.row_sums import BUOYED, DRAG_U, GrainPlaces, place_grains
 from ryusa.water.slice_sums import BAD_GRAIN, DRAG_NOW, GIVEN_X, RATE, SOLID, SOLID_W
 

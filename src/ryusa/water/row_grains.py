@@ -43,8 +43,8 @@ from ryusa.water.row_exchange import (
     turbulence_at_stations,
 )
 from ryusa.water.row_grain_sums import MetByGrains, sum_grains_in_row
+from ryusa.water.row_layout import RowEnds, RowWater
 from ryusa.water.row_station import largest_residual
-from ryusa.water.row_step import RowEnds, RowWater
 from ryusa.water.row_sums import (
     N_ROW_SUM,
     GrainPlaces,

@@ -7,16 +7,15 @@ of a step and limits: design/0027.
 """
 
 import math
-from typing import NamedTuple
 
 from ryusa.model.row import INFLOW, OPEN, SAME_DEPTH, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.drive import imposed_gradient
-from ryusa.water.exchange import Ints
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
 from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
 from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
+from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
 from ryusa.water.row_station import StationArrays, solve_station
 from ryusa.water.time_step import distribute_water
 
@@ -25,67 +24,6 @@ MOST_TAKEN = 0.98  # largest share of the water of a segment that leaves it in a
 # scalars that `advance_row` writes
 FAULT_AT, STEPS, COURANT_MET = range(3)
 N_SCALARS = 3
-
-
-class RowShape(NamedTuple):
-    """Fixed geometry of a row; segments and stations are numbered downstream."""
-
-    left: Ints  # segment upstream of each station, shape (n_station,)
-    right: Ints  # segment downstream of it
-    west: Ints  # station at the upstream end of each segment, shape (n_segment,)
-    east: Ints  # station at its downstream end
-    first: Ints  # lowest cell of each segment that is not solid, shape (n_segment,)
-    shut: Ints  # lowest cell of each segment that grains can be in, above dams that seep too
-    kind: Ints  # OPEN, WALL or INFLOW of each station, shape (n_station,)
-    bottom: Floats  # height of the bottom of each segment [m], shape (n_segment,)
-    steep: Floats  # 1 + tan**2 of the angle between bottom and x axis at each station [-]
-    inner: tuple[int, int]  # first segment that is not beyond an end, and last one plus one
-    dx: float  # length of a segment [m]
-    g_z: float  # gravity normal to the x axis [m/s2]
-
-
-class RowEnds(NamedTuple):
-    """What lies beyond the open ends: one segment each, filled anew before each step."""
-
-    segment: Ints  # the segment, shape (n_end,)
-    beside: Ints  # its neighbour in the row
-    rule: Ints  # DEPTH_GIVEN or SAME_DEPTH
-    depth: Floats  # depth for DEPTH_GIVEN, at an inlet over the bed there [m]
-    discharge: float  # through a station of kind INFLOW, the first [m2/s]
-    shape: Floats  # profile of its speed, to any scale, shape (n,)
-
-
-class RowMatrix(NamedTuple):
-    """Fixed porous solid in the cells of the segments, each of shape (n_segment, n).
-
-    Its force on the water per volume of mixture is rho (linear u + quadratic |u| u), with u in the pores.
-    """
-
-    phi: Floats  # concentration [-]
-    linear: Floats  # [1/s]
-    quadratic: Floats  # [1/m]
-
-
-class RowGrains(NamedTuple):
-    """Action of free grains during a step, as in `Sources`."""
-
-    phi: Floats  # concentration of all grains, fixed ones included, in the segments [-], (n_segment, n)
-    force: Floats  # at the stations [N/m3], shape (n_station, n)
-    slope: Floats  # [N s/m4], shape (n_station, n)
-    carried: Floats  # [-], shape (n_station, n)
-    phi_w: Floats  # [m/s], shape (n_station, n)
-    laden: bool  # whether there are grains or a porous solid
-
-
-class RowWater(NamedTuple):
-    """State of the water, overwritten by a step."""
-
-    u: Floats  # speed along x [m/s], shape (n_station, n)
-    volume: Floats  # water per area of a segment [m], shape (n_segment,)
-    content: Floats  # the part in each cell [m], shape (n_segment, n)
-    wet: Floats  # wet thickness of each cell [m], shape (n_segment, n)
-    surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_segment,)
-    passed: Floats  # water that has passed each station [m2], shape (n_station,)
 
 
 @kernel

@@ -24,7 +24,7 @@ from ryusa.water.at_grains import STRESS as BY_STRESS
 from ryusa.water.exchange import DRY, FOUR, Ints
 from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.fixed_grains import drag_on_fixed
-from ryusa.water.row_step import RowShape
+from ryusa.water.row_layout import RowShape
 from ryusa.water.slice_sums import N_SUM
 
 BUOYED = N_SUM  # row of the sums: force of the slope of the surface on the grains along x [N]

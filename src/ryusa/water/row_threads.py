@@ -25,7 +25,7 @@ from ryusa.water.row_grain_sums import (
     as_rows,
     cut_in_row,
 )
-from ryusa.water.row_step import RowShape
+from ryusa.water.row_layout import RowShape
 from ryusa.water.row_sums import GrainPlaces
 from ryusa.water.slice_sums import BAD_GRAIN, RATE
 
