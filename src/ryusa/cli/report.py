@@ -1,7 +1,7 @@
 """`ryusa report`: one page about one run or several."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -81,12 +81,7 @@ def report(
     name = schema.BRIEF if brief else schema.REPORT
     path = output or (runs[0] / name if len(runs) == 1 else Path(name))
     if brief:
-        chosen = {
-            "like": like,
-            "begin": None if begin is None else in_unit(begin, "s", "--begin"),
-            "reach": None if reach is None else reach_of("--reach", reach, open_run(runs[0])),
-        }
-        _brief(runs, path, chosen, browser)
+        _brief(runs, path, like, begin, reach, browser)
         return
     for option, given in (("--like", like), ("--begin", begin), ("--reach", reach)):
         if given is not None:
@@ -99,13 +94,18 @@ def report(
     write_page(page, path, browser)
 
 
-def _brief(runs: list[Path], path: Path, chosen: dict[str, Any], browser: bool) -> None:
+def _brief(
+    runs: list[Path], path: Path, like: str | None, begin: str | None, reach: str | None, browser: bool
+) -> None:
     from ryusa.report.brief import brief_page, write_pdf
 
+    opened = [open_run(one) for one in runs]
+    since = None if begin is None else in_unit(begin, "s", "--begin")
+    within = None if reach is None else reach_of("--reach", reach, opened[0])
     pdf = path.suffix == ".pdf"
     if not pdf:
         page_file(path)
-    page = brief_page([open_run(one) for one in runs], **chosen)
+    page = brief_page(opened, like=like, begin=since, reach=within)
     if not pdf:
         write_page(page, path, browser)
         return

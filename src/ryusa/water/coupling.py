@@ -4,14 +4,13 @@ Within an interval the slices of the grains and the state of the water are const
 received is taken from the cells with the same slices, so that momentum is conserved to round-off.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from zlib import crc32
 
 import numpy as np
 
-from ryusa.errors import NotANumber, WaterError
+from ryusa.errors import NotANumber
 from ryusa.laws._family import numbers
 from ryusa.laws.families import BedKind, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
@@ -22,6 +21,7 @@ from ryusa.model.scene import Floats
 from ryusa.water import eddies
 from ryusa.water import exchange_step as step
 from ryusa.water.closures import averaged
+from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.drive import discharge
 from ryusa.water.exchange import Ints, weighted_concentration
 from ryusa.water.exchange_arrays import ExchangeArrays, concentration_of_bed
@@ -374,38 +374,6 @@ class Coupling:
             arrays.force_z, speeds, sampled,
         )  # fmt: skip
         return sampled
-
-
-def steps_resolved(fastest: float, dt: float, longest: int) -> int:
-    """Steps of dt [s] for which an interval resolves the drag, at least one and at most `longest`.
-
-    `fastest` is the largest rate of relaxation by drag [1/s].
-    """
-    if fastest * dt * longest <= STIFF:
-        return longest
-    return max(math.floor(STIFF / (fastest * dt)), 1)
-
-
-def refuse_unresolved(fastest: float, dt: float, most: float, t: float, step: int) -> None:
-    """Refuse a step of dt [s] that is longer than `most` of the time in which drag acts.
-
-    Parameters
-    ----------
-    fastest : largest rate of relaxation by drag [1/s].
-    t, step : of the water, for the message.
-
-    Raises
-    ------
-    WaterError : a step does not resolve it.
-    """
-    if fastest * dt > most:
-        raise WaterError(
-            f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
-            f"{dt:.3g} s does not resolve",
-            step=step,
-            t=t,
-            hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
-        )
 
 
 def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -15,7 +15,7 @@ from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
-from ryusa.water.coupling import refuse_unresolved, steps_resolved
+from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
