@@ -1,8 +1,14 @@
 """Pictures of two moments of one run have the same axes and the same scale of colours."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from ryusa.build import scene as scene_of
+from ryusa.build.walls import WallMotion, rectangle
+from ryusa.measure.snapshot import snapshot
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
@@ -48,3 +54,18 @@ def test_forces_are_drawn_in_the_axes_of_the_grains(falling):
     grains, forces = falling.draw("grains", t=0.0).axes[0], falling.draw("forces", t=0.1).axes[0]
     assert grains.get_xlim() == forces.get_xlim()
     assert grains.get_ylim() == forces.get_ylim()
+
+
+def test_a_lid_that_is_dragged_on_is_drawn_over_the_whole_period():
+    lid = replace(
+        rectangle("lid", (0, 0, 10 * D), (8 * D, 0, 0), (0, 4 * D, 0)), motion=WallMotion((11 * D, 0, 0))
+    )
+    scene, _ = scene_of(x=[(D, D, D)], d=D, period=(8 * D, 4 * D), walls=[lid])
+    frames = SimpleNamespace(
+        t=[0.0, 1.0], x=[np.full((1, 3), D)] * 2, v=[np.zeros((1, 3))] * 2, omega=[np.zeros((1, 3))] * 2
+    )
+    lines = snapshot(SimpleNamespace(scene=scene, frames=frames), t=1.0).wall_lines
+    along = lines[(np.ptp(lines[:, :, 1], axis=1) == 0.0)]
+    assert along[:, :, 0].min() == pytest.approx(0.0, abs=1e-12)
+    assert along[:, :, 0].max() == pytest.approx(8 * D)
+    assert np.ptp(along[:, :, 0], axis=1).sum() == pytest.approx(2 * 8 * D)  # each side of the lid once

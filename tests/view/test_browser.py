@@ -141,6 +141,16 @@ def test_a_plane_is_seen_from_its_side(opened, three):
     assert np.count_nonzero(line.any(axis=1)) < 10
 
 
+def test_a_lid_that_is_dragged_on_is_seen_over_the_whole_period(opened, dragged, flight):
+    page = opened(dragged, "lid.html")
+    without, metre = looked_at(page, 10)
+    page.evaluate("ryusaViewers[0].wallsShown = true; ryusaViewers[0].changed()")
+    settled(page)
+    lid = np.abs(pixels(page)[: HIGH - BAR] - without)[: HIGH // 2].sum(axis=2) > 60  # not the floor
+    assert lid.sum(axis=1).max() == pytest.approx(flight.period / metre, abs=3.0)
+    assert lid.any(axis=0).sum() == pytest.approx(flight.period / metre, abs=3.0)  # nothing beside the period
+
+
 def test_slider_keys_and_play_move_the_time(opened, three):
     page = opened(three, "time.html")
     time = "ryusaViewers[0].time"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
-from ryusa.model.wall_shape import in_world, lines_of
+from ryusa.model.wall_shape import in_world, lines_of, within_periods
 from ryusa.printed import ByShape
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
@@ -167,11 +167,12 @@ def _highest(along_row: Floats, ends: Floats) -> float:
 
 
 def _lines_of_walls(scene: Scene, t: float) -> Floats:
-    """Ends of the edges of the walls that are there at a time [m], shape (n_line, 2, 3)."""
+    """Ends of the edges of the walls there at a time, inside the periods as grains [m], (n_line, 2, 3)."""
     if scene.walls is None:
         return np.zeros((0, 2, 3))
     ends, owner = lines_of(scene.walls)
-    return in_world(scene.walls, ends, owner, t)[scene.walls.active[owner]]
+    lines = in_world(scene.walls, ends, owner, t)[scene.walls.active[owner]]
+    return within_periods(lines, np.zeros(3), np.array([*scene.period, math.inf]))
 
 
 def bounds(run: Run, lane: int | None = None) -> Bounds:

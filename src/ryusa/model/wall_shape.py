@@ -13,6 +13,7 @@ from ryusa.model.welding import sides_of, welded
 
 SIDES = 48
 _RULES = 8  # lines along a cylinder
+_END = 1.0e-6  # of a period: what crosses its end by less lies in it
 
 
 def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
@@ -65,6 +66,56 @@ def in_world(walls: Walls, points: Floats, owner: Ints, t: float) -> Floats:
         mine = owner == w
         placed[mine] = points[mine] @ turn.T + shift
     return placed
+
+
+def cut_off(corners: Floats, room: Floats) -> Floats:
+    """Part of a polygon or a line, (n, 3) [m], where the room at its corners, (n,), is not negative.
+
+    >>> cut_off(np.array([[0.0, 0, 0], [2, 0, 0], [0, 2, 0]]), np.array([1.0, -1, 1])).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 2.0, 0.0]]
+    """
+    kept = list[Floats]()
+    for k in range(len(corners)):
+        after = (k + 1) % len(corners)
+        if room[k] >= 0.0:
+            kept.append(corners[k])
+        if (room[k] >= 0.0) != (room[after] >= 0.0):
+            kept.append(corners[k] + (corners[after] - corners[k]) * (room[k] / (room[k] - room[after])))
+    some = kept[:2] if len(corners) == 2 else kept  # a line is cut on its way there and on its way back
+    return np.array(some).reshape(-1, 3)
+
+
+def within_periods(shapes: Floats, low: Floats, period: Floats) -> Floats:
+    """Lines (n, 2, 3) or triangles (n, 3, 3) [m], cut where a period ends and each part taken into it.
+
+    Parameters
+    ----------
+    low, period : begin and length of the period along each axis [m], shape (3,); inf where there is none.
+
+    >>> line = np.array([[[0.5, 0.0, 0.0], [1.5, 0.0, 0.0]]])
+    >>> within_periods(line, np.zeros(3), np.array([1.0, np.inf, np.inf]))[:, :, 0].tolist()
+    [[0.5, 1.0], [0.0, 0.5]]
+    """
+    for axis in np.flatnonzero(np.isfinite(period)):
+        place = (shapes[:, :, axis] - low[axis]) / period[axis]
+        least, most = place.min(axis=1), place.max(axis=1)
+        first = np.floor(least + _END)
+        last = np.maximum(np.ceil(most - _END) - 1.0, first)
+        inside = (least > -_END) & (most < 1.0 + _END)  # a face in an end of the period stays there
+        first[inside] = last[inside] = 0.0
+        whole = shapes[first == last]
+        whole[:, :, axis] -= period[axis] * first[first == last, None]
+        found = [whole]
+        for k in np.flatnonzero(first < last):
+            for image in np.arange(first[k], last[k] + 1.0):
+                part = shapes[k].copy()
+                part[:, axis] -= period[axis] * image
+                part = cut_off(part, part[:, axis] - low[axis])
+                part = cut_off(part, low[axis] + period[axis] - part[:, axis])
+                fan = [[0, 1]] if len(shapes[k]) == 2 else [[0, a, a + 1] for a in range(1, len(part) - 1)]
+                found += [part[None, one] for one in fan]
+        shapes = np.concatenate(found)
+    return shapes
 
 
 def _rings(face: Floats, sides: int) -> tuple[Floats, Floats]:
