@@ -32,6 +32,7 @@ def long_section(
     *,
     height: float | None = None,
     words: str | None = None,
+    alone: bool = False,
 ) -> Figure:
     """Draw bed, water, energy line and critical depth by elevation, below them Froude number and transport.
 
@@ -44,43 +45,50 @@ def long_section(
     among : other moments of the same run that the axes cover too, as in a film.
     height : of the figure [inch]; default by its panels.
     words : above the figure, in place of the time in it.
+    alone : elevations alone, without Froude number and transport.
     """
-    panels = 3 if found.grains else 2
+    panels = 1 if alone else 3 if found.grains else 2
     figure, axes = style.new(
-        panels, width=style.PAGE, height=height or (3.8 if panels == 2 else 4.8), sharex=True,
+        panels, width=style.PAGE, height=height or (2.4, 3.8, 4.8)[panels - 1], sharex=True,
         gridspec_kw={"height_ratios": (2.4, 1.0, 1.0)[:panels]},
     )  # fmt: skip
     every = (found, *among)
     if words is not None:
         figure.suptitle(words, fontsize=8.0)
     _elevations(axes[0], found, every, timed=words is None)
+    if not alone:
+        _flow(axes[1:], found, every)
     x = found.x
-    axes[1].axhline(1.0, color=style.FAINT, lw=0.6)
-    axes[1].plot(x, found.froude, color=WATER)
-    _band(axes[1], found, "froude", 1.0, WATER)
-    axes[1].set_ylabel("Froude  (–)")
-    known = np.nan_to_num(np.concatenate([one.froude[one.depth > THIN] for one in every]))
-    if among:
-        axes[1].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
-    most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
-    axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], most))
-    if found.grains:
-        transport = np.concatenate([one.solid_discharge for one in every])
-        scale, unit = _per_width(transport)
-        axes[2].axhline(0.0, color=style.FAINT, lw=0.6)
-        axes[2].plot(x, found.solid_discharge * scale, color=LINE)
-        _band(axes[2], found, "solid_discharge", scale, LINE)
-        axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
-        if among:
-            low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
-            room = 0.05 * (high - low) or 1.0
-            axes[2].set_ylim(low - room, high + room)
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
     half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.5
     axes[-1].set_xlim(x[0] - half, x[-1] + half)
     figure.align_ylabels(axes)
     _note_exaggeration(figure, axes[0], _lengths(_drawn_heights(every))[0])
     return figure
+
+
+def _flow(axes: Sequence[Axes], found: LongSection, every: Sequence[LongSection]) -> None:
+    """Froude number, and the transport of grains where there are some; of several sections on axes of all."""
+    axes[0].axhline(1.0, color=style.FAINT, lw=0.6)
+    axes[0].plot(found.x, found.froude, color=WATER)
+    _band(axes[0], found, "froude", 1.0, WATER)
+    axes[0].set_ylabel("Froude  (–)")
+    known = np.nan_to_num(np.concatenate([one.froude[one.depth > THIN] for one in every]))
+    if len(every) > 1:
+        axes[0].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
+    most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
+    axes[0].set_ylim(0.0, min(axes[0].get_ylim()[1], most))
+    if found.grains:
+        transport = np.concatenate([one.solid_discharge for one in every])
+        scale, unit = _per_width(transport)
+        axes[1].axhline(0.0, color=style.FAINT, lw=0.6)
+        axes[1].plot(found.x, found.solid_discharge * scale, color=LINE)
+        _band(axes[1], found, "solid_discharge", scale, LINE)
+        axes[1].set_ylabel(f"grains  $q_s$\n({unit})")
+        if len(every) > 1:
+            low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
+            room = 0.05 * (high - low) or 1.0
+            axes[1].set_ylim(low - room, high + room)
 
 
 def _drawn_heights(every: Sequence[LongSection]) -> Floats:

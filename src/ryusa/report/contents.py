@@ -68,6 +68,7 @@ class Drawing:
     doc: str
     address: str
     wide: bool  # its letters need the whole width of the page
+    height: float  # over its width [-]
 
 
 @dataclass
@@ -266,18 +267,18 @@ def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
     return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at, *[some] * (every > 1)))
 
 
-def draw_picture(found: RunContents, results: Results, entry: PictureEntry) -> None:
-    """Draw a picture of a run and add it; an error says why there is none."""
+def draw_picture(found: RunContents, results: Results, entry: PictureEntry, **how: Any) -> None:
+    """Draw a picture of a run and add it; an error says why there is none. `how`: options of its function."""
     if entry.settled:
         _need_settled(results)
     if entry.measure:
         source = next(one for one in MEASURES if one.name == entry.measure)
-        figure: Figure = load(entry.function)(called(source)(results))
+        figure: Figure = load(entry.function)(called(source)(results), **how)
     else:
         figure, _ = called(entry)(results)
     held = io.BytesIO()
     with applied():
         figure.savefig(held, format="png", dpi=DPI, pil_kwargs={"compress_level": 0})  # packed by `embedded`
     held.seek(0)
-    wide = float(figure.get_size_inches()[0]) > _ONE_COLUMN
-    found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), wide))
+    width, height = map(float, figure.get_size_inches())
+    found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), width > _ONE_COLUMN, height / width))
