@@ -22,6 +22,7 @@ from ryusa.measure.energy import Energy
 from ryusa.measure.front import Front
 from ryusa.measure.long_section import DepthHistory
 from ryusa.model.tally import GIFTS, HELD, LOSSES
+from ryusa.results.label import run_label
 
 T = np.linspace(0.0, 1.0, 6)
 
@@ -224,6 +225,26 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
 def test_a_legend_does_not_show_the_digits_that_tell_runs_of_a_sweep_apart(
     tmp_path, folder: str, name: str
 ) -> None:
-    from ryusa.figures.runs import _name  # pyright: ignore[reportPrivateUsage]
+    assert run_label(SimpleNamespace(folder=tmp_path / folder)) == name
 
-    assert _name(SimpleNamespace(folder=tmp_path / folder)) == name  # pyright: ignore[reportArgumentType]
+
+@pytest.mark.parametrize(
+    ("folder", "name"),
+    [
+        (
+            "friction_angle-30deg_restitution-0.5_seed-1-1a2b3c4d",
+            "friction angle 30 deg, restitution 0.5, seed 1",
+        ),
+        ("grains.density-2650kgm3_seed-1-37324363", "grains.density 2650 kg/m3, seed 1"),
+        ("friction_angle-30deg_grains.density-2650kgm3_water.density-10-1a2b3c4d",
+         "friction angle 30 deg, grains.density 2650 kg/m3, water.density 1000 kg/m3, seed 1"),
+        ("friction_angle-30deg_of_mine", "friction_angle-30deg_of_mine"),
+    ],
+)  # fmt: skip
+def test_a_legend_says_in_words_what_varies_in_a_sweep(tmp_path, folder: str, name: str) -> None:
+    overrides = {
+        "contact.friction_angle": "30 deg", "contact.restitution": "0.5", "grains.density": "2650 kg/m3",
+        "water.density": "1000 kg/m3", "seed": "1", "stop.time": "'1 s'",
+    }  # fmt: skip
+    run = SimpleNamespace(folder=tmp_path / folder, provenance={"overrides": overrides})
+    assert run_label(run) == name

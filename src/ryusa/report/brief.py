@@ -18,6 +18,7 @@ from ryusa.report.contents import Drawing, RunContents, draw_picture, explain_va
 from ryusa.report.covered import conditions, not_covered, rests_on
 from ryusa.report.question import question_of
 from ryusa.results import Results
+from ryusa.results.label import run_label
 from ryusa.results.shown import _saved
 from ryusa.running.resume import changes_of
 from ryusa.study.html import template
@@ -54,7 +55,7 @@ def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float
     _check(runs)
     question, _ = question_of(runs[0].case, like)
     about = RunContents(
-        title=str(runs[0].case.get("title") or runs[0].folder.resolve().name), folder="", status="",
+        title=str(runs[0].case.get("title") or runs[0].folder.resolve().name), label="", folder="", status="",
         complete=True, rows=[],
     )  # fmt: skip
     explain_values(about, runs[0])
@@ -64,7 +65,7 @@ def brief_page(runs: Sequence[Results], *, like: str | None = None, begin: float
         answer=answer(runs, question, begin),
         pictures=_pictures(about, runs[0], question),
         sheet=SHEET,
-        of_run=runs[0].folder.resolve().name if len(runs) > 1 else "",
+        of_run=run_label(runs[0]) if len(runs) > 1 else "",
         conditions=conditions(runs, about.values),
         rests_on=rests_on(runs, about.values),
         not_covered=not_covered(runs),

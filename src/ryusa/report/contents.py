@@ -16,6 +16,7 @@ from ryusa.measure._run import settle_time
 from ryusa.measure.long_section import LongSection
 from ryusa.measure.table import ROUND_OFF
 from ryusa.results import Results, schema
+from ryusa.results.label import run_label
 from ryusa.running.inspection import inspection_rows, state_of
 from ryusa.study.html import embedded
 from ryusa.view.page import encoded
@@ -76,6 +77,7 @@ class RunContents:
     """All that the report says of one run."""
 
     title: str
+    label: str
     folder: str
     status: str
     complete: bool
@@ -93,6 +95,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     """Collect what the report says of a run; what cannot be had is listed with its reason."""
     found = RunContents(
         title=str(results.case.get("title") or results.folder.resolve().name),
+        label=run_label(results),
         folder=results.folder.resolve().name,
         status=state_of(results),
         complete=results.complete,
