@@ -213,6 +213,22 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
     assert level.get_ylabel() == "$z$ above datum  (cm)"
 
 
+@pytest.mark.parametrize(("d", "shown"), [(4e-3, True), (1e-4, False)])
+def test_a_weir_beyond_the_grains_is_shown_unless_they_would_be_dots(d: float, shown: bool) -> None:
+    x = np.arange(100) * 0.01 + 0.005
+    floor = np.where((x > 0.7) & (x < 0.75), 0.0, -0.1 * x)
+    row = np.column_stack([x, -0.1 * x, floor, -0.1 * x + 0.02])
+    seen = Snapshot(
+        t=0.0, grains=np.arange(1), x=np.array([[0.1, 0.0, 0.0]]), d=np.array([d]), speed=np.zeros(1),
+        spin=np.zeros(1), bed_x=np.zeros((0, 3)), bed_d=np.zeros(0), plane_point=np.zeros((0, 3)),
+        plane_normal=np.zeros((0, 3)), period=np.inf, along_row=row,
+    )  # fmt: skip
+    axes = figures.snapshot(seen).axes[0]
+    assert bool(axes.get_xlim()[1] > 75.0) is shown  # centimetres: the weir from crest to toe
+    assert bool(axes.get_ylim()[0] < -7.5) is shown
+    assert axes.get_xlim()[1] < 80.0
+
+
 @pytest.mark.parametrize(
     ("folder", "name"),
     [

@@ -16,6 +16,7 @@ UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the
 SHARE = (
     0.99  # of the values that a colour scale covers: a few fast grains would leave the others in one colour
 )
+WIDEST = 600.0  # diameters of the largest grain, up to which a picture is widened to show the dams of a row
 DRY = 1.0e-6  # depth up to which a segment of a row is dry [m]
 _PLACES, _FRAMES = 20_000_000, 60  # grains and frames from which bounds are taken, of not fewer frames
 
@@ -84,9 +85,9 @@ class Snapshot(ByShape):
     @property
     def bounds(self) -> Bounds:
         """Of this moment."""
-        ends = np.array([_ends(self.x, self.d)])
-        highest = self.surface if math.isfinite(self.surface) else _highest(self.along_row, ends)
         d_max = float(self.d.max(initial=0.0))
+        ends = _with_dams(np.array([_ends(self.x, self.d)]), self.along_row, d_max)
+        highest = self.surface if math.isfinite(self.surface) else _highest(self.along_row, ends)
         return _bounds(ends, self.speed, self.spin, (self.bed_x, self.bed_d), self.period, highest, d_max)
 
     def rows(self) -> list[dict[str, object]]:
@@ -166,6 +167,16 @@ def _highest(along_row: Floats, ends: Floats) -> float:
     return float(np.nanmax(along_row[near, 2:], initial=-math.inf))
 
 
+def _with_dams(ends: Floats, along_row: Floats, d_max: float) -> Floats:
+    """Ends of grains, (n, 4) as of `_ends`, and those of the dams of a row that are not too far from them."""
+    x, bottom, floor, _ = along_row[along_row[:, 2] > along_row[:, 1]].T
+    half = 0.5 * (along_row[1, 0] - along_row[0, 0]) if len(along_row) > 1 else 0.0
+    left, right = float(ends[:, 0].min()), float(ends[:, 1].max())
+    near = np.maximum(right, x + half) - np.minimum(left, x - half) < WIDEST * d_max
+    dams = np.column_stack([x - half, x + half, bottom, floor])[near]
+    return np.concatenate([ends, dams]) if math.isfinite(right) else ends
+
+
 def _lines_of_walls(scene: Scene, t: float) -> Floats:
     """Ends of the edges of the walls there at a time, inside the periods as grains [m], (n_line, 2, 3)."""
     if scene.walls is None:
@@ -201,11 +212,12 @@ def bounds(run: Run, lane: int | None = None) -> Bounds:
         spin.append(np.asarray(run.frames.omega[k])[ids, 1][there])
     water = getattr(run, "water", None)
     rows = [_along_row(run, k) for k in (0, n_frame // 2, n_frame - 1)]
-    highest = max(_highest(one, np.array(ends)) for one in rows) if water is None else water.z_surface.max()
+    d_max = float(scene.d[ids].max(initial=0.0))
+    shown = _with_dams(np.array(ends), np.concatenate(rows), d_max)
+    highest = max(_highest(one, shown) for one in rows) if water is None else water.z_surface.max()
     return _bounds(
-        np.array(ends), np.concatenate(speed), np.concatenate(spin),
-        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, float(highest),
-        float(scene.d[ids].max(initial=0.0)),
+        shown, np.concatenate(speed), np.concatenate(spin),
+        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, float(highest), d_max,
     )  # fmt: skip
 
 
