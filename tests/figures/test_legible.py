@@ -201,7 +201,7 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
         fall=np.radians(9.0),
     )  # fmt: skip
     axes = figures.snapshot(seen).axes[0]
-    (surface,) = (one for one in axes.lines if len(one.get_xdata()) == 10)
+    (surface,) = (one for one in axes.lines if len(one.get_xdata()) == 12)
     assert surface.get_ydata() == pytest.approx(5.0)
     assert axes.get_ylim()[1] > 5.0  # centimetres: the picture holds water and weir
     assert [max(one.get_xy()[:, 1]) for one in axes.patches if len(one.get_xy()) == 5] == pytest.approx(
@@ -225,6 +225,7 @@ def test_a_weir_beyond_the_grains_is_shown_unless_they_would_be_dots(d: float, s
     )  # fmt: skip
     axes = figures.snapshot(seen).axes[0]
     assert bool(axes.get_xlim()[1] > 75.0) is shown  # centimetres: the weir from crest to toe
+    assert surface.get_xdata()[[0, -1]] == pytest.approx([0.0, 10.0])  # to the ends of the row
     assert bool(axes.get_ylim()[0] < -7.5) is shown
     assert axes.get_xlim()[1] < 80.0
 

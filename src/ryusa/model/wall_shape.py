@@ -38,10 +38,10 @@ def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
     return np.concatenate(corners), np.concatenate(owner)
 
 
-def lines_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
+def lines_of(walls: Walls, sides: int = SIDES, *, rules: bool = True) -> tuple[Floats, Ints]:
     """Edges where a smooth surface ends, in the frames of the walls, (n, 2, 3) [m], and the wall of each.
 
-    Rims of round faces, and some lines along a cylinder, by which its turning is seen.
+    Rims of round faces, and by `rules` some lines along a cylinder, by which its turning is seen.
     """
     flat = np.flatnonzero(walls.kind == FaceKind.TRIANGLE)
     corners = triangles_of(walls, 3)[0][: len(flat)]
@@ -51,11 +51,29 @@ def lines_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
         low, high = _rings(walls.face[f], sides)
         some = [np.stack([low[:-1], low[1:]], axis=1)]
         if walls.kind[f] == FaceKind.CYLINDER:
-            rules = slice(0, sides, max(sides // _RULES, 1))
-            some += [np.stack([high[:-1], high[1:]], axis=1), np.stack([low[rules], high[rules]], axis=1)]
+            some.append(np.stack([high[:-1], high[1:]], axis=1))
+            chosen = slice(0, sides if rules else 0, max(sides // _RULES, 1))
+            some.append(np.stack([low[chosen], high[chosen]], axis=1))
         found += some
         owners += [np.full(len(one), walls.wall[f]) for one in some]
     return np.concatenate(found), np.concatenate(owners)
+
+
+def outlines_of(walls: Walls, t: float, sight: Floats) -> tuple[Floats, Ints]:
+    """Lines along cylinders where they end for an eye that looks along a unit vector.
+
+    They are in the world at time t [s], (n, 2, 3) [m], with the wall of each.
+    """
+    found, owner = [np.zeros((0, 2, 3))], list[int]()
+    for f in np.flatnonzero(walls.kind == FaceKind.CYLINDER):
+        turn, shift = pose(walls.motion[walls.wall[f]], t)
+        centre, axis = turn @ walls.face[f, :3] + shift, turn @ walls.face[f, 3:6]
+        out = np.cross(axis, sight)
+        if (across := float(np.linalg.norm(out))) > _END:  # else it is seen as a circle
+            both = centre + float(walls.face[f, 6]) / across * np.stack([out, -out])
+            found.append(np.stack([both, both + float(walls.face[f, 7]) * axis], axis=1))
+            owner += [int(walls.wall[f])] * 2
+    return np.concatenate(found), np.array(owner, np.int64)
 
 
 def in_world(walls: Walls, points: Floats, owner: Ints, t: float) -> Floats:
