@@ -16,6 +16,7 @@ from ryusa.figures.deposit import deposit
 from ryusa.figures.front import front
 from ryusa.figures.long_section import x_t
 from ryusa.figures.passages import passages
+from ryusa.figures.plane_shear import plane_shear
 from ryusa.measure import Snapshot, Tracks
 from ryusa.measure.deposit import Deposit
 from ryusa.measure.energy import Energy
@@ -168,6 +169,27 @@ def stored(volume: float, slope: float) -> Deposit:
     )
 
 
+def test_a_history_of_one_moment_is_refused_in_words() -> None:
+    one = history()
+    with pytest.raises(ResultsError, match="1 frames: a picture over time needs two or more"):
+        x_t(DepthHistory(**(one.__dict__ | {"t": one.t[:1]})))
+
+
+@pytest.mark.parametrize("mu", [0.4, 0.8])
+def test_the_friction_of_a_sheared_layer_lies_in_its_panel(mu: float) -> None:
+    class Layer(SimpleNamespace):
+        def __getitem__(self, name: str) -> SimpleNamespace:
+            return SimpleNamespace(error=0.01)
+
+    z, layers = np.linspace(0.0, 0.02, 5), SimpleNamespace(value=np.ones(5), error=np.full(5, 0.1))
+    found = Layer(
+        z=z, core=(0.005, 0.015), phi=layers, v_x=layers, at_datum=0.0, shear_rate=50.0, speed=1.0,
+        inertial=0.1, mu=mu,
+    )  # fmt: skip
+    low, high = plane_shear(found).axes[2].get_ylim()  # pyright: ignore[reportArgumentType]
+    assert low < mu < high
+
+
 def test_a_deposit_draws_what_there_is_and_says_what_there_is_not() -> None:
     assert len(deposit(stored(0.01, 0.1)).axes) == 2
     assert style.notes(deposit(stored(0.0, 0.1))) == ("no grains came, went or were stored",)
@@ -203,6 +225,7 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
     axes = figures.snapshot(seen).axes[0]
     (surface,) = (one for one in axes.lines if len(one.get_xdata()) == 12)
     assert surface.get_ydata() == pytest.approx(5.0)
+    assert surface.get_xdata()[[0, -1]] == pytest.approx([0.0, 10.0])  # to the ends of the row
     assert axes.get_ylim()[1] > 5.0  # centimetres: the picture holds water and weir
     assert [max(one.get_xy()[:, 1]) for one in axes.patches if len(one.get_xy()) == 5] == pytest.approx(
         [3.0] * 3
@@ -225,7 +248,6 @@ def test_a_weir_beyond_the_grains_is_shown_unless_they_would_be_dots(d: float, s
     )  # fmt: skip
     axes = figures.snapshot(seen).axes[0]
     assert bool(axes.get_xlim()[1] > 75.0) is shown  # centimetres: the weir from crest to toe
-    assert surface.get_xdata()[[0, -1]] == pytest.approx([0.0, 10.0])  # to the ends of the row
     assert bool(axes.get_ylim()[0] < -7.5) is shown
     assert axes.get_xlim()[1] < 80.0
 

@@ -226,8 +226,10 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
     Raises
     ------
     CaseError : `quantity` is no such word.
-    ResultsError : there are no grains whose bed or transport could be drawn.
+    ResultsError : there are no grains whose bed or transport could be drawn, or one moment alone.
     """
+    if len(found.t) < 2:
+        raise ResultsError(f"{len(found.t)} frames: a picture over time needs two or more")
     if quantity is not None:
         known_word(quantity, QUANTITIES, "quantity")
     if quantity not in {None, "depth"} and not found.grains:
