@@ -137,12 +137,13 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     low = min(float(one.elevation(one.bottom).min()) for one in every) * scale
     highest = max(float(one.elevation(np.maximum(one.surface, one.bed)).max()) for one in every) * scale
     head = max(highest, *(_head(one) * scale for one in every))
-    span = min(head, highest + 0.5 * (highest - low)) - low
-    axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
+    span = min(head, 2.0 * highest - low) - low
+    edge = np.concatenate([x[:1] - 0.5 * step, x, x[-1:] + 0.5 * step])  # to the ends of the row
+    ground = np.concatenate([bottom[:1], bottom, bottom[-1:]])
+    axes.fill_between(edge, ground, low - 0.12 * span, color=style.BED, lw=0.0)
     wet = surface > floor  # a dry dam has its surface on its crest
     sides = np.column_stack([x - 0.5 * step, x + 0.5 * step])
-    ends = np.clip(sides, x[0], x[-1])
-    along, under, top = _over_segments(ends, wet, wet[1:] & wet[:-1], x, bottom, surface)
+    along, under, top = _over_segments(sides, wet, wet[1:] & wet[:-1], x, bottom, surface)
     axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
@@ -153,7 +154,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
         axes.plot(at, high_of, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
         _dam(axes, name, first, end, x, step, bottom, floor)
-    axes.plot(x, bottom, color="#5a4a2f", lw=0.9)
+    axes.plot(edge, ground, color="#5a4a2f", lw=0.9)
     axes.plot(along, top, color=WATER, lw=1.2, label="surface")
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
