@@ -63,3 +63,15 @@ def test_water_and_bottom_reach_the_ends_of_the_row_and_a_fast_flow_has_its_ener
     assert any(np.ptp(one.get_xdata()) == 8.0 for one in axes.lines if one is not surface)  # the bottom
     assert axes.get_ylim()[1] > 1.9 * factor
     assert len(long_section(fast, alone=True).axes) == 1
+
+
+def test_a_film_of_water_does_not_set_the_axes() -> None:
+    x = np.arange(10) + 0.5
+    bottom = np.zeros(10)
+    surface = np.where(x < 2.0, 1.0, 1e-5)
+    film = section(x, bottom, bottom, bottom, surface)
+    film = replace(film, froude=np.where(x < 2.0, 0.5, 1e4), energy=np.where(x < 2.0, 1.1, 1e3))
+    elevations, froude, *_ = long_section(film).axes
+    factor = 1.0 if "(m)" in elevations.get_ylabel() else 100.0
+    assert elevations.get_ylim()[1] < 1.5 * factor
+    assert froude.get_ylim()[1] < 10.0

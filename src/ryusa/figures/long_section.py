@@ -18,6 +18,7 @@ MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s
 WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
+FILM = 0.01  # of the greatest depth, below which water does not count for the ends of axes
 SHARE = 0.995  # of the values that a colour scale covers
 SAID = {"bed": "rise of the bed", "transport": "grains $q_s$"}
 TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
@@ -73,7 +74,7 @@ def _flow(axes: Sequence[Axes], found: LongSection, every: Sequence[LongSection]
     axes[0].plot(found.x, found.froude, color=WATER)
     _band(axes[0], found, "froude", 1.0, WATER)
     axes[0].set_ylabel("Froude  (–)")
-    known = np.nan_to_num(np.concatenate([one.froude[one.depth > THIN] for one in every]))
+    known = np.nan_to_num(np.concatenate([one.froude[_deep(one)] for one in every]))
     if len(every) > 1:
         axes[0].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
     most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
@@ -89,6 +90,11 @@ def _flow(axes: Sequence[Axes], found: LongSection, every: Sequence[LongSection]
             low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
             room = 0.05 * (high - low) or 1.0
             axes[1].set_ylim(low - room, high + room)
+
+
+def _deep(found: LongSection) -> np.ndarray:
+    """Segments whose water is no film beside the deepest."""
+    return found.depth > max(THIN, FILM * float(found.depth.max(initial=0.0)))
 
 
 def _drawn_heights(every: Sequence[LongSection]) -> Floats:
@@ -175,7 +181,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
 
 def _head(found: LongSection) -> float:
     """Elevation below which most of the energy line lies [m]; -inf where all is dry."""
-    wet = found.depth > THIN
+    wet = _deep(found)
     return float(np.quantile(found.elevation(found.energy)[wet], CALM)) if wet.any() else -np.inf
 
 
