@@ -17,6 +17,7 @@ from ryusa.figures.front import front
 from ryusa.figures.long_section import x_t
 from ryusa.figures.passages import passages
 from ryusa.figures.plane_shear import plane_shear
+from ryusa.figures.shear_zone import shear_zone
 from ryusa.measure import Snapshot, Tracks
 from ryusa.measure.deposit import Deposit
 from ryusa.measure.energy import Energy
@@ -188,6 +189,20 @@ def test_the_friction_of_a_sheared_layer_lies_in_its_panel(mu: float) -> None:
     )  # fmt: skip
     low, high = plane_shear(found).axes[2].get_ylim()  # pyright: ignore[reportArgumentType]
     assert low < mu < high
+
+
+def test_the_legends_of_a_shear_zone_lie_over_no_point() -> None:
+    r = np.linspace(0.0, 0.07, 15)
+    found = SimpleNamespace(
+        r=r, turning=SimpleNamespace(value=0.8 * (r < 0.04), error=0.0 * r), centre=0.04, width=0.02,
+        share=0.8, r_s=0.05, z=r[:4], centres=r[5:9], widths=r[3:7], height=0.02,
+    )  # fmt: skip
+    figure = shear_zone(found)  # pyright: ignore[reportArgumentType]
+    figure.canvas.draw()
+    for axes in figure.axes:
+        legend = axes.get_legend().get_window_extent()  # pyright: ignore[reportOptionalMemberAccess]
+        assert legend.y0 >= axes.get_window_extent().y1
+        assert legend.x1 <= figure.bbox.x1
 
 
 def test_a_deposit_draws_what_there_is_and_says_what_there_is_not() -> None:
