@@ -44,8 +44,8 @@ def test_stress_and_weight_above_lie_on_each_other_and_mu_stands_over_i():
 
 
 def test_under_water_no_weight_is_drawn():
-    left, _ = contact_stress(replace(found(), deviation=math.nan)).axes
-    assert [text.get_text() for text in left.get_legend().get_texts()] == [
+    figure = contact_stress(replace(found(), deviation=math.nan))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         r"$\sigma_{zz}$",
         r"$-\sigma_{xz}$",
         "crest of the bed",
@@ -59,3 +59,10 @@ def test_the_crest_of_the_bed_is_marked_on_heights_above_datum():
     np.testing.assert_allclose(crest.get_ydata(), 0.2)
     bare, _ = contact_stress(replace(found(), crest=math.nan)).axes
     assert "crest of the bed" not in bare.get_legend_handles_labels()[1]
+
+
+def test_the_legend_lies_over_no_curve():
+    figure = contact_stress(found())
+    figure.canvas.draw()
+    legend = figure.legends[0].get_window_extent()
+    assert not any(legend.overlaps(axes.get_window_extent()) for axes in figure.axes)

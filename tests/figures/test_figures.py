@@ -9,6 +9,7 @@ import pytest
 from matplotlib.collections import EllipseCollection
 
 from ryusa import figures
+from ryusa.build.walls import rectangle, with_walls
 from ryusa.measure import ContactTimes, HeapSurface, Snapshot, Tracks, Vibration
 from ryusa.model import EVENT, ContactLaw, Scene
 
@@ -308,6 +309,24 @@ def test_contact_times_are_drawn_by_partner():
     figure.canvas.draw()
     labels = figure.axes[0].get_legend_handles_labels()[1]
     assert {"free grain (1)", "fixed grain (2)", "plane (1)"} <= set(labels)
+
+
+@pytest.mark.parametrize(("count", "named"), [(2, {"wall lid (1)", "wall base (2)"}), (5, {"wall (3)"})])
+def test_contact_times_tell_walls_from_planes_and_by_their_names(count, named):
+    from ryusa.measure import collisions
+
+    events = np.zeros(4, EVENT)
+    events["j"] = [3, 4, 5, 5]  # one contact with the plane; faces are numbered after it
+    events["t_end"] = events["t_part"] = 1e-4
+    events["closing_begin"] = 0.1
+    names = ("lid", "base", *"cde")[:count]
+    flat = [rectangle(name, (0, 0, 0), (1, 0, 0), (0, 1, 0)) for name in names]
+    scene = with_walls(two_grains(), [replace(one, face=one.face[:1], kind=one.kind[:1]) for one in flat])
+    run = SimpleNamespace(case={}, scene=scene, contacts=events)
+    labels = figures.collision_times(collisions(run), scene).axes[0].get_legend_handles_labels()[1]
+    assert {one for one in labels if "expected" not in one} == {"plane (1)"} | named
+    assert len(collisions(run, partner="plane").events) == 1
+    assert len(collisions(run, partner="wall").events) == 3
 
 
 def two_grains():

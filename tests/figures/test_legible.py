@@ -16,12 +16,15 @@ from ryusa.figures.deposit import deposit
 from ryusa.figures.front import front
 from ryusa.figures.long_section import x_t
 from ryusa.figures.passages import passages
+from ryusa.figures.plane_shear import plane_shear
+from ryusa.figures.shear_zone import shear_zone
 from ryusa.measure import Snapshot, Tracks
 from ryusa.measure.deposit import Deposit
 from ryusa.measure.energy import Energy
 from ryusa.measure.front import Front
 from ryusa.measure.long_section import DepthHistory
 from ryusa.model.tally import GIFTS, HELD, LOSSES
+from ryusa.results.label import run_label
 
 T = np.linspace(0.0, 1.0, 6)
 
@@ -167,6 +170,41 @@ def stored(volume: float, slope: float) -> Deposit:
     )
 
 
+def test_a_history_of_one_moment_is_refused_in_words() -> None:
+    one = history()
+    with pytest.raises(ResultsError, match="1 frames: a picture over time needs two or more"):
+        x_t(DepthHistory(**(one.__dict__ | {"t": one.t[:1]})))
+
+
+@pytest.mark.parametrize("mu", [0.4, 0.8])
+def test_the_friction_of_a_sheared_layer_lies_in_its_panel(mu: float) -> None:
+    class Layer(SimpleNamespace):
+        def __getitem__(self, name: str) -> SimpleNamespace:
+            return SimpleNamespace(error=0.01)
+
+    z, layers = np.linspace(0.0, 0.02, 5), SimpleNamespace(value=np.ones(5), error=np.full(5, 0.1))
+    found = Layer(
+        z=z, core=(0.005, 0.015), phi=layers, v_x=layers, at_datum=0.0, shear_rate=50.0, speed=1.0,
+        inertial=0.1, mu=mu,
+    )  # fmt: skip
+    low, high = plane_shear(found).axes[2].get_ylim()  # pyright: ignore[reportArgumentType]
+    assert low < mu < high
+
+
+def test_the_legends_of_a_shear_zone_lie_over_no_point() -> None:
+    r = np.linspace(0.0, 0.07, 15)
+    found = SimpleNamespace(
+        r=r, turning=SimpleNamespace(value=0.8 * (r < 0.04), error=0.0 * r), centre=0.04, width=0.02,
+        share=0.8, r_s=0.05, z=r[:4], centres=r[5:9], widths=r[3:7], height=0.02,
+    )  # fmt: skip
+    figure = shear_zone(found)  # pyright: ignore[reportArgumentType]
+    figure.canvas.draw()
+    for axes in figure.axes:
+        legend = axes.get_legend().get_window_extent()  # pyright: ignore[reportOptionalMemberAccess]
+        assert legend.y0 >= axes.get_window_extent().y1
+        assert legend.x1 <= figure.bbox.x1
+
+
 def test_a_deposit_draws_what_there_is_and_says_what_there_is_not() -> None:
     assert len(deposit(stored(0.01, 0.1)).axes) == 2
     assert style.notes(deposit(stored(0.0, 0.1))) == ("no grains came, went or were stored",)
@@ -200,8 +238,9 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
         fall=np.radians(9.0),
     )  # fmt: skip
     axes = figures.snapshot(seen).axes[0]
-    (surface,) = (one for one in axes.lines if len(one.get_xdata()) == 10)
+    (surface,) = (one for one in axes.lines if len(one.get_xdata()) == 12)
     assert surface.get_ydata() == pytest.approx(5.0)
+    assert surface.get_xdata()[[0, -1]] == pytest.approx([0.0, 10.0])  # to the ends of the row
     assert axes.get_ylim()[1] > 5.0  # centimetres: the picture holds water and weir
     assert [max(one.get_xy()[:, 1]) for one in axes.patches if len(one.get_xy()) == 5] == pytest.approx(
         [3.0] * 3
@@ -210,6 +249,22 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
     assert axes.get_xlabel() == "$x$, falls by 9°  (cm)"
     level = figures.snapshot(Snapshot(**(seen.__dict__ | {"fall": 0.0}))).axes[0]
     assert level.get_ylabel() == "$z$ above datum  (cm)"
+
+
+@pytest.mark.parametrize(("d", "shown"), [(4e-3, True), (1e-4, False)])
+def test_a_weir_beyond_the_grains_is_shown_unless_they_would_be_dots(d: float, shown: bool) -> None:
+    x = np.arange(100) * 0.01 + 0.005
+    floor = np.where((x > 0.7) & (x < 0.75), 0.0, -0.1 * x)
+    row = np.column_stack([x, -0.1 * x, floor, -0.1 * x + 0.02])
+    seen = Snapshot(
+        t=0.0, grains=np.arange(1), x=np.array([[0.1, 0.0, 0.0]]), d=np.array([d]), speed=np.zeros(1),
+        spin=np.zeros(1), bed_x=np.zeros((0, 3)), bed_d=np.zeros(0), plane_point=np.zeros((0, 3)),
+        plane_normal=np.zeros((0, 3)), period=np.inf, along_row=row,
+    )  # fmt: skip
+    axes = figures.snapshot(seen).axes[0]
+    assert bool(axes.get_xlim()[1] > 75.0) is shown  # centimetres: the weir from crest to toe
+    assert bool(axes.get_ylim()[0] < -7.5) is shown
+    assert axes.get_xlim()[1] < 80.0
 
 
 @pytest.mark.parametrize(
@@ -224,6 +279,26 @@ def test_grains_of_a_row_stand_in_its_water_with_its_weir_and_its_inclined_axis(
 def test_a_legend_does_not_show_the_digits_that_tell_runs_of_a_sweep_apart(
     tmp_path, folder: str, name: str
 ) -> None:
-    from ryusa.figures.runs import _name  # pyright: ignore[reportPrivateUsage]
+    assert run_label(SimpleNamespace(folder=tmp_path / folder)) == name
 
-    assert _name(SimpleNamespace(folder=tmp_path / folder)) == name  # pyright: ignore[reportArgumentType]
+
+@pytest.mark.parametrize(
+    ("folder", "name"),
+    [
+        (
+            "friction_angle-30deg_restitution-0.5_seed-1-1a2b3c4d",
+            "friction angle 30 deg, restitution 0.5, seed 1",
+        ),
+        ("grains.density-2650kgm3_seed-1-37324363", "grains.density 2650 kg/m3, seed 1"),
+        ("friction_angle-30deg_grains.density-2650kgm3_water.density-10-1a2b3c4d",
+         "friction angle 30 deg, grains.density 2650 kg/m3, water.density 1000 kg/m3, seed 1"),
+        ("friction_angle-30deg_of_mine", "friction_angle-30deg_of_mine"),
+    ],
+)  # fmt: skip
+def test_a_legend_says_in_words_what_varies_in_a_sweep(tmp_path, folder: str, name: str) -> None:
+    overrides = {
+        "contact.friction_angle": "30 deg", "contact.restitution": "0.5", "grains.density": "2650 kg/m3",
+        "water.density": "1000 kg/m3", "seed": "1", "stop.time": "'1 s'",
+    }  # fmt: skip
+    run = SimpleNamespace(folder=tmp_path / folder, provenance={"overrides": overrides})
+    assert run_label(run) == name

@@ -1,6 +1,7 @@
 """The long section says how many times its heights are exaggerated."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,3 +50,28 @@ def test_the_surface_is_drawn_over_a_bed_and_up_to_the_faces_of_a_dry_dam() -> N
     assert np.nanmin(z) == np.nanmax(z) == pytest.approx(factor)
     wet = at[np.isfinite(z)]
     assert wet[wet < 11.0].max() == 10.0 and wet[wet > 11.0].min() == 12.0
+
+
+def test_water_and_bottom_reach_the_ends_of_the_row_and_a_fast_flow_has_its_energy_line() -> None:
+    x, one = np.arange(8) + 0.5, np.ones(8)
+    fast = section(x, 0.0 * x, 0.0 * x, 0.0 * x, one)
+    axes = long_section(replace(fast, energy=1.9 * one)).axes[0]
+    factor = 1.0 if "(m)" in axes.get_ylabel() else 100.0
+    (surface,) = (one for one in axes.lines if one.get_label() == "surface")
+    at = surface.get_xdata()
+    assert (np.nanmin(at), np.nanmax(at)) == (0.0, 8.0)
+    assert any(np.ptp(one.get_xdata()) == 8.0 for one in axes.lines if one is not surface)  # the bottom
+    assert axes.get_ylim()[1] > 1.9 * factor
+    assert len(long_section(fast, alone=True).axes) == 1
+
+
+def test_a_film_of_water_does_not_set_the_axes() -> None:
+    x = np.arange(10) + 0.5
+    bottom = np.zeros(10)
+    surface = np.where(x < 2.0, 1.0, 1e-5)
+    film = section(x, bottom, bottom, bottom, surface)
+    film = replace(film, froude=np.where(x < 2.0, 0.5, 1e4), energy=np.where(x < 2.0, 1.1, 1e3))
+    elevations, froude, *_ = long_section(film).axes
+    factor = 1.0 if "(m)" in elevations.get_ylabel() else 100.0
+    assert elevations.get_ylim()[1] < 1.5 * factor
+    assert froude.get_ylim()[1] < 10.0

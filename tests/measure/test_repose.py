@@ -145,6 +145,15 @@ def test_the_run_out_starts_at_the_gate(make):
     assert len(snapshot(run).plane_point) == 1
 
 
+def test_the_run_out_of_a_heap_behind_a_wall_called_gate_starts_at_its_foot(make):
+    x = triangle(math.tan(math.radians(25.0)), columns=20)
+    run = standing(make, x)
+    bare = surface(run).start
+    n = run.scene.n_partner
+    run.scene = replace(run.scene, groups=run.scene.groups | {"gate": (n, n + 2)})  # of faces
+    assert surface(run).start == bare
+
+
 def test_other_sizes_and_scales_give_the_same_slope(make):
     rng = np.random.default_rng(3)
     x = triangle(math.tan(math.radians(30.0)), columns=50)

@@ -1,6 +1,7 @@
 import os
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import scene
+from ryusa.build.walls import WallMotion, rectangle, with_walls
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.results import Results
@@ -44,6 +46,16 @@ def three(tmp_path_factory: pytest.TempPathFactory) -> Results:
     )  # fmt: skip
     folder = tmp_path_factory.mktemp("view") / "three"
     return run_scene(flying, state, folder, frames=0.01, stop=Stop(time=0.1), progress=False)
+
+
+@pytest.fixture(scope="session")
+def dragged(three: Results) -> Results:
+    """`three`, as if under a lid as long as the period that is dragged by 1.3 periods in the run."""
+    lid = rectangle("lid", (0.0, 0.0, 0.03), (PERIOD, 0.0, 0.0), (0.0, PERIOD, 0.0))
+    found = Results.open(three.folder)
+    found.scene = with_walls(found.scene, [replace(lid, motion=WallMotion(velocity=(13 * PERIOD, 0.0, 0.0)))])
+    found.scenes = [(0, 0.0, found.scene)]
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,9 @@ import pytest
 from PIL import Image
 
 from ryusa.report.brief import brief_page, write_pdf
+from ryusa.report.contents import Drawing
 from ryusa.report.page import report_page
+from ryusa.study.html import embedded
 from ryusa.view.page import view_page
 
 WIDE, HIGH = 1000, 640
@@ -141,6 +143,16 @@ def test_a_plane_is_seen_from_its_side(opened, three):
     assert np.count_nonzero(line.any(axis=1)) < 10
 
 
+def test_a_lid_that_is_dragged_on_is_seen_over_the_whole_period(opened, dragged, flight):
+    page = opened(dragged, "lid.html")
+    without, metre = looked_at(page, 10)
+    page.evaluate("ryusaViewers[0].wallsShown = true; ryusaViewers[0].changed()")
+    settled(page)
+    lid = np.abs(pixels(page)[: HIGH - BAR] - without)[: HIGH // 2].sum(axis=2) > 60  # not the floor
+    assert lid.sum(axis=1).max() == pytest.approx(flight.period / metre, abs=3.0)
+    assert lid.any(axis=0).sum() == pytest.approx(flight.period / metre, abs=3.0)  # nothing beside the period
+
+
 def test_slider_keys_and_play_move_the_time(opened, three):
     page = opened(three, "time.html")
     time = "ryusaViewers[0].time"
@@ -257,4 +269,31 @@ def test_a_brief_prints_on_one_sheet_however_much_it_has_to_say(browser, saltati
         )
         assert page.evaluate(fits)
         assert page.evaluate("document.querySelector('figure img').naturalWidth") > 0
+        page.close()
+
+
+def test_a_picture_on_a_brief_takes_its_width_and_of_several_heights_the_one_for_which_there_is_room(
+    browser, saltation, folder, monkeypatch
+):
+    def drawings(*given):
+        found = []
+        for height in (480, 330, 200):
+            held = io.BytesIO()
+            Image.new("RGB", (710, height)).save(held, format="png")
+            held.seek(0)
+            found.append(Drawing("long_section", f"{height}", embedded(held), True, height / 710))
+        return found
+
+    monkeypatch.setattr("ryusa.report.brief._pictures", drawings)
+    widths = (
+        "[...document.querySelectorAll('figure img')]"
+        ".map(one => one.getBoundingClientRect().width / document.querySelector('h2').clientWidth)"
+    )
+    for lines, shown in ((4, 0), (12, 1), (22, 2)):
+        said = [("Grains", "of some kind")] * lines
+        monkeypatch.setattr("ryusa.report.brief.conditions", lambda *given, said=said: said)
+        (folder / "brief.html").write_text(brief_page([saltation]), encoding="utf-8")
+        page = browser.new_page()
+        page.goto((folder / "brief.html").as_uri())
+        assert page.evaluate(widths) == pytest.approx([float(k == shown) for k in range(3)], abs=0.01)
         page.close()

@@ -181,6 +181,17 @@ def test_around_a_followed_grain_neighbours_keep_their_places_across_a_side(thre
             assert any(abs(column - a) < 3.0 and abs(row - b) < 3.0 for a, b, _ in found)
 
 
+@pytest.mark.parametrize("follow", [None, 2])
+def test_a_lid_that_is_dragged_on_is_seen_over_the_whole_period(dragged, flight, follow):
+    painter = painter_of(dragged, follow=follow)
+    metre = 0.5 * painter.canvas.height / painter.look.camera.half
+    seen = painter.at(0.05).astype(int)
+    painter._add_walls = lambda *given: None
+    lid = np.abs(seen - painter.at(0.05)).sum(axis=2) > 60
+    assert lid.sum(axis=1).max() == pytest.approx(flight.period * metre, abs=3.0)
+    assert lid.any(axis=0).sum() == pytest.approx(flight.period * metre, abs=3.0)  # nothing beside the period
+
+
 def test_scale_and_box_hold_the_whole_film(saltation):
     painter = painter_of(saltation)
     low, high = painter.look.box

@@ -8,6 +8,7 @@ from ryusa.measure import Collisions
 from ryusa.model import Scene
 
 BINS = 60
+MOST = 4  # walls that are drawn each; more are drawn as one
 
 
 @style.house
@@ -17,12 +18,17 @@ def collision_times(found: Collisions, scene: Scene) -> Figure:
     Parameters
     ----------
     found : `measure.collisions`.
-    scene : tells free grains, fixed grains and planes apart.
+    scene : tells free grains, fixed grains, planes and walls apart.
     """
     figure, (axes,) = style.new(height=2.3)
     j = found.events["j"]
-    bed, planes = scene.n_grain, scene.n_grain + scene.n_fixed
-    kinds = (("free grain", j < bed), ("fixed grain", (j >= bed) & (j < planes)), ("plane", j >= planes))
+    bed, planes, walls = scene.n_grain, scene.n_grain + scene.n_fixed, scene.n_partner - scene.n_face
+    kinds = [("free grain", j < bed), ("fixed grain", (j >= bed) & (j < planes))]
+    kinds.append(("plane", (j >= planes) & (j < walls)))
+    if scene.walls is not None:
+        of = np.where(j >= walls, scene.walls.wall[np.maximum(j - walls, 0)], -1)
+        named = scene.walls.names if scene.n_wall <= MOST else ()
+        kinds += [(f"wall {name}", of == w) for w, name in enumerate(named)] or [("wall", of >= 0)]
     good = np.isfinite(found.duration) & (found.duration > 0.0)
     ends = (found.duration[good].min(), found.duration[good].max()) if good.any() else (1.0e-4, 1.0e-3)
     edges = np.geomspace(0.9 * ends[0], 1.1 * ends[1], BINS + 1).tolist()

@@ -13,7 +13,7 @@ LEAST = 0.5  # share of the largest concentration; below, mu and I are those of 
 @style.house
 def contact_stress(found: ContactStress) -> Figure:
     """Draw normal and shear stress and the weight above over height, and mu over I where grains are dense."""
-    figure, (left, right) = style.new(1, 2, width=1.5 * style.COLUMN, height=2.8)
+    figure, (left, right) = style.new(1, 2, width=1.5 * style.COLUMN, height=3.1)
     z = found.z * CM
     dry = np.isfinite(found.deviation)
     for k, (one, sign, above, label) in enumerate((
@@ -30,7 +30,7 @@ def contact_stress(found: ContactStress) -> Figure:
         left.axhline(found.crest * CM, color=style.FAINT, lw=0.7, ls="--", zorder=0, label="crest of the bed")
     left.set_xlabel("stress  (Pa)")
     left.set_ylabel(style.height("cm"))
-    left.legend()
+    figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     dense = (found.phi.value > LEAST * np.nanmax(found.phi.value)) & ~(found.z <= found.crest)
     right.errorbar(
         found.inertial_number[dense], found.mu.value[dense], found.mu.error[dense], fmt="o",

@@ -18,6 +18,7 @@ MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s
 WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
+FILM = 0.01  # of the greatest depth, below which water does not count for the ends of axes
 SHARE = 0.995  # of the values that a colour scale covers
 SAID = {"bed": "rise of the bed", "transport": "grains $q_s$"}
 TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
@@ -32,6 +33,7 @@ def long_section(
     *,
     height: float | None = None,
     words: str | None = None,
+    alone: bool = False,
 ) -> Figure:
     """Draw bed, water, energy line and critical depth by elevation, below them Froude number and transport.
 
@@ -44,43 +46,55 @@ def long_section(
     among : other moments of the same run that the axes cover too, as in a film.
     height : of the figure [inch]; default by its panels.
     words : above the figure, in place of the time in it.
+    alone : elevations alone, without Froude number and transport.
     """
-    panels = 3 if found.grains else 2
+    panels = 1 if alone else 3 if found.grains else 2
     figure, axes = style.new(
-        panels, width=style.PAGE, height=height or (3.8 if panels == 2 else 4.8), sharex=True,
+        panels, width=style.PAGE, height=height or (2.4, 3.8, 4.8)[panels - 1], sharex=True,
         gridspec_kw={"height_ratios": (2.4, 1.0, 1.0)[:panels]},
     )  # fmt: skip
     every = (found, *among)
     if words is not None:
         figure.suptitle(words, fontsize=8.0)
     _elevations(axes[0], found, every, timed=words is None)
+    if not alone:
+        _flow(axes[1:], found, every)
     x = found.x
-    axes[1].axhline(1.0, color=style.FAINT, lw=0.6)
-    axes[1].plot(x, found.froude, color=WATER)
-    _band(axes[1], found, "froude", 1.0, WATER)
-    axes[1].set_ylabel("Froude  (–)")
-    known = np.nan_to_num(np.concatenate([one.froude[one.depth > THIN] for one in every]))
-    if among:
-        axes[1].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
-    most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
-    axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], most))
-    if found.grains:
-        transport = np.concatenate([one.solid_discharge for one in every])
-        scale, unit = _per_width(transport)
-        axes[2].axhline(0.0, color=style.FAINT, lw=0.6)
-        axes[2].plot(x, found.solid_discharge * scale, color=LINE)
-        _band(axes[2], found, "solid_discharge", scale, LINE)
-        axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
-        if among:
-            low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
-            room = 0.05 * (high - low) or 1.0
-            axes[2].set_ylim(low - room, high + room)
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
     half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.5
     axes[-1].set_xlim(x[0] - half, x[-1] + half)
     figure.align_ylabels(axes)
     _note_exaggeration(figure, axes[0], _lengths(_drawn_heights(every))[0])
     return figure
+
+
+def _flow(axes: Sequence[Axes], found: LongSection, every: Sequence[LongSection]) -> None:
+    """Froude number, and the transport of grains where there are some; of several sections on axes of all."""
+    axes[0].axhline(1.0, color=style.FAINT, lw=0.6)
+    axes[0].plot(found.x, found.froude, color=WATER)
+    _band(axes[0], found, "froude", 1.0, WATER)
+    axes[0].set_ylabel("Froude  (–)")
+    known = np.nan_to_num(np.concatenate([one.froude[_deep(one)] for one in every]))
+    if len(every) > 1:
+        axes[0].set_ylim(0.0, 1.05 * max(float(known.max(initial=0.0)), 1.05))
+    most = max(FAST, 1.2 * float(np.quantile(known, MOST))) if len(known) else FAST
+    axes[0].set_ylim(0.0, min(axes[0].get_ylim()[1], most))
+    if found.grains:
+        transport = np.concatenate([one.solid_discharge for one in every])
+        scale, unit = _per_width(transport)
+        axes[1].axhline(0.0, color=style.FAINT, lw=0.6)
+        axes[1].plot(found.x, found.solid_discharge * scale, color=LINE)
+        _band(axes[1], found, "solid_discharge", scale, LINE)
+        axes[1].set_ylabel(f"grains  $q_s$\n({unit})")
+        if len(every) > 1:
+            low, high = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
+            room = 0.05 * (high - low) or 1.0
+            axes[1].set_ylim(low - room, high + room)
+
+
+def _deep(found: LongSection) -> np.ndarray:
+    """Segments whose water is no film beside the deepest."""
+    return found.depth > max(THIN, FILM * float(found.depth.max(initial=0.0)))
 
 
 def _drawn_heights(every: Sequence[LongSection]) -> Floats:
@@ -129,12 +143,13 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     low = min(float(one.elevation(one.bottom).min()) for one in every) * scale
     highest = max(float(one.elevation(np.maximum(one.surface, one.bed)).max()) for one in every) * scale
     head = max(highest, *(_head(one) * scale for one in every))
-    span = min(head, highest + 0.5 * (highest - low)) - low
-    axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
+    span = min(head, 2.0 * highest - low) - low
+    edge = np.concatenate([x[:1] - 0.5 * step, x, x[-1:] + 0.5 * step])  # to the ends of the row
+    ground = np.concatenate([bottom[:1], bottom, bottom[-1:]])
+    axes.fill_between(edge, ground, low - 0.12 * span, color=style.BED, lw=0.0)
     wet = surface > floor  # a dry dam has its surface on its crest
     sides = np.column_stack([x - 0.5 * step, x + 0.5 * step])
-    ends = np.clip(sides, x[0], x[-1])
-    along, under, top = _over_segments(ends, wet, wet[1:] & wet[:-1], x, bottom, surface)
+    along, under, top = _over_segments(sides, wet, wet[1:] & wet[:-1], x, bottom, surface)
     axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
@@ -145,7 +160,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
         axes.plot(at, high_of, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
         _dam(axes, name, first, end, x, step, bottom, floor)
-    axes.plot(x, bottom, color="#5a4a2f", lw=0.9)
+    axes.plot(edge, ground, color="#5a4a2f", lw=0.9)
     axes.plot(along, top, color=WATER, lw=1.2, label="surface")
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
@@ -166,7 +181,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
 
 def _head(found: LongSection) -> float:
     """Elevation below which most of the energy line lies [m]; -inf where all is dry."""
-    wet = found.depth > THIN
+    wet = _deep(found)
     return float(np.quantile(found.elevation(found.energy)[wet], CALM)) if wet.any() else -np.inf
 
 
@@ -218,8 +233,10 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
     Raises
     ------
     CaseError : `quantity` is no such word.
-    ResultsError : there are no grains whose bed or transport could be drawn.
+    ResultsError : there are no grains whose bed or transport could be drawn, or one moment alone.
     """
+    if len(found.t) < 2:
+        raise ResultsError(f"{len(found.t)} frames: a picture over time needs two or more")
     if quantity is not None:
         known_word(quantity, QUANTITIES, "quantity")
     if quantity not in {None, "depth"} and not found.grains:

@@ -42,7 +42,7 @@ def plane_shear(found: PlaneShear) -> Figure:
         fmt="o", ms=4.0, color=style.COLOURS[1], label="this run",
     )  # fmt: skip
     right.set_xscale("log")
-    right.set_ylim(0.0, 0.7)
+    right.set_ylim(0.0, max(0.7, 1.1 * found.mu))
     right.set_xlabel("inertial number  $I$  (–)")
     right.set_ylabel(r"friction  $\mu$  (–)")
     right.legend(fontsize=6.0, loc="lower right")

@@ -42,7 +42,7 @@ def surface(seen: Snapshot, found: HeapSurface) -> Figure:
     names = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
     axes.legend(
         names.values(), names.keys(), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(names),
-        fontsize=5.8, handletextpad=0.2, columnspacing=0.8, handlelength=1.2, borderpad=0.0,
+        fontsize=5.8, handletextpad=0.5, columnspacing=0.8, handlelength=1.2, borderpad=0.0,
         borderaxespad=2.4,
     )  # fmt: skip
     axes.annotate(

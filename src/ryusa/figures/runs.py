@@ -1,7 +1,6 @@
 """Pictures of a run folder: each calls the measures it needs, and returns the figure and its numbers."""
 
 import math
-import re
 from collections.abc import Sequence
 from typing import Literal
 
@@ -12,9 +11,9 @@ from ryusa.errors import ResultsError
 from ryusa.figures.snapshot import Colour
 from ryusa.measure._run import settle_time
 from ryusa.results import Results
+from ryusa.results.label import run_label
 
 Drawn = tuple[Figure, list[dict[str, object]]]
-_DIGITS = re.compile(r"(?:^|-)(?=[0-9]*[a-f])[0-9a-f]{8}$")  # of studies, `study.task`; a date has no letter
 Side = Literal["right", "left"]
 
 
@@ -92,21 +91,21 @@ def hops(results: Results) -> Drawn:
     """Heights and lengths of hops over fixed grains."""
     found = measure.saltation(results)
     _need(len(found.hops) > 0, results, "hops over fixed grains after the settling time")
-    drawn = figures.hops({_name(results): found}, float(results.scene.d[0]))
+    drawn = figures.hops({run_label(results): found}, float(results.scene.d[0]))
     return drawn, measure.rows_of(found.hops)
 
 
 def profile(results: Results, begin: float | None = None, end: float = math.inf) -> Drawn:
     """Concentration and speed of the grains over height within a window [s]."""
     layers = measure.profiles(results, begin, end, bed=True)
-    return figures.profiles({_name(results): layers}), layers.rows()
+    return figures.profiles({run_label(results): layers}), layers.rows()
 
 
 def transport(results: Results, begin: float | None = None, end: float = math.inf) -> Drawn:
     """Transport rate within a window [s], over time and beside bed-load formulae."""
     found = measure.transport(results, begin, end)
     lines = [figures.Formula(*one) for one in measure.classical(results, found)]
-    return figures.transport_of_run(found, lines, _name(results)), found.rows()
+    return figures.transport_of_run(found, lines, run_label(results)), found.rows()
 
 
 def surface(results: Results, t: float | None = None, side: Side = "right", lane: int | None = None) -> Drawn:
@@ -130,11 +129,6 @@ def vibration(
     """Motion of grains within short time windows; by default of the two that move most."""
     found = measure.vibration(results, begin=begin, end=end)
     return figures.vibration(found, grains or found.most_restless(2)), found.rows()
-
-
-def _name(results: Results) -> str:
-    """Name of a run in a legend: that of its folder, without the digits by which a sweep tells runs apart."""
-    return _DIGITS.sub("", results.folder.resolve().name) or "run"
 
 
 def _lone(results: Results) -> bool:

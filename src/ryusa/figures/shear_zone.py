@@ -13,7 +13,7 @@ CM = 100.0  # centimetres in a metre
 @style.house
 def shear_zone(found: ShearZone) -> Figure:
     """Draw the angular velocity with its fit, and centre and width of the zone over height."""
-    figure, (left, right) = style.new(1, 2, width=1.6 * style.COLUMN, height=2.6)
+    figure, (left, right) = style.new(1, 2, width=1.6 * style.COLUMN, height=2.8)
     r, value = found.r * CM, found.turning.value
     left.errorbar(r, value, yerr=found.turning.error, fmt="o", ms=2.8, lw=0.7, color=style.COLOURS[0])
     fine = np.linspace(0.0, float(found.r[-1]), 200)
@@ -23,7 +23,7 @@ def shear_zone(found: ShearZone) -> Figure:
     left.set_ylim(-0.05, 1.05)
     left.set_xlabel("distance from the axis  (cm)")
     left.set_ylabel("angular velocity over that of the disc  (–)")
-    left.legend(fontsize=6.0, loc="lower left")
+    style.legend_above(left, 1, fontsize=6.0)
     z = found.z * CM
     right.errorbar(
         found.centres * CM, z, xerr=found.widths * CM, fmt="s", ms=3.0, lw=0.8, color=style.COLOURS[1],
@@ -42,5 +42,5 @@ def shear_zone(found: ShearZone) -> Figure:
     right.set_xlim(0.0, float(r[-1]))
     right.set_xlabel("centre of the zone, bars: width  (cm)")
     right.set_ylabel("height above the disc  (cm)")
-    right.legend(fontsize=6.0, loc="lower left")
+    style.legend_above(right, 2, fontsize=6.0)
     return figure

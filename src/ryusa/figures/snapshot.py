@@ -22,6 +22,7 @@ WET, SURFACE = "#e8f1f8", "#0072B2"  # water, and its surface
 PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
 EDGE = "#6f695f"  # of planes and walls
 WIDE = 2.2  # ratio of the sides above which a picture is two columns wide
+METRES = 3.0  # width above which a picture has its lengths in metres [m]
 LEVEL = 1.0e-4  # angle up to which the x axis is level [rad]
 SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
 BAR = 0.065  # height of the colour bar [inch]
@@ -76,10 +77,11 @@ def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> t
     axes.set_xlabel(f"$x${falls}  (cm)")
     axes.set_ylabel("$z$ normal to $x$  (cm)" if inclined else "$z$ above datum  (cm)")
     axes.tick_params(top=False, right=False)
+    _in_metres(axes, wide)
     text = f"$t$ = {seen.t:.4g} s" + (f", lane {seen.lane} of {seen.lanes}" if seen.lanes > 1 else "")
     axes.annotate(text, (0, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", fontsize=7.0)
     if math.isfinite(seen.surface):
-        _water(axes, seen.surface, box)
+        _water(axes, seen.surface, box, seen.period)
     if len(seen.along_row):
         _row(axes, seen.along_row)
     planes(axes, seen.plane_point, seen.plane_normal, box, CM)
@@ -92,26 +94,39 @@ def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> t
     return figure, axes
 
 
+def _in_metres(axes: Axes, wide: float) -> None:
+    """Label axes of a picture that is some metres wide [m] in metres, although they are in centimetres."""
+    if wide > METRES:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(lambda value, _: f"{value / CM:g}".replace("-", "\N{MINUS SIGN}"))
+            axis.set_label_text(axis.get_label_text().replace("(cm)", "(m)"))
+
+
 def grains(axes: Axes, seen: Snapshot, colours: Any, zorder: float = 2.0) -> None:
     """Draw the free grains; `colours` is one or one per grain."""
     circles(axes, seen.x, seen.d, colours, RIM, period=seen.period, zorder=zorder)
 
 
-def _water(axes: Axes, surface: float, box: Box) -> None:
-    """Shade the water, and mark its surface with the usual triangle."""
-    low, high, x = box[2] * CM, surface * CM, 0.97 * box[1] * CM + 0.03 * box[0] * CM
-    axes.axhspan(low, high, color=WET, lw=0.0, zorder=0.2)
-    axes.axhline(high, color=SURFACE, lw=0.8, zorder=0.4)
+def _water(axes: Axes, surface: float, box: Box, period: float) -> None:
+    """Shade the water within the period, and mark its surface with the usual triangle."""
+    low, high = box[2] * CM, surface * CM
+    ends = np.array([max(box[0], 0.0), min(box[1], period)] if math.isfinite(period) else box[:2]) * CM
+    axes.fill_between(ends, low, high, color=WET, lw=0.0, zorder=0.2)
+    axes.plot(ends, [high, high], color=SURFACE, lw=0.8, zorder=0.4)
+    x = 0.97 * ends[1] + 0.03 * ends[0]
     axes.plot([x], [high], marker=7, ms=4.5, color=SURFACE, mew=0.0, zorder=3.0)  # with its tip on the line
 
 
 def _row(axes: Axes, along: Floats) -> None:
     """Shade the water and the dams of a row of columns, and draw its surface."""
     x, bottom, floor, surface = (CM * along).T
-    wet = np.isfinite(surface)
-    axes.fill_between(x, bottom, surface, where=wet.tolist(), color=WET, lw=0.0, zorder=0.2)
-    axes.plot(x, surface, color=SURFACE, lw=0.8, zorder=0.4)
     half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.0
+    at = np.concatenate([x[:1] - half, x, x[-1:] + half])  # to the ends of the first and the last segment
+    bottom_at, surface_at = (np.concatenate([z[:1], z, z[-1:]]) for z in (bottom, surface))
+    axes.fill_between(
+        at, bottom_at, surface_at, where=np.isfinite(surface_at).tolist(), color=WET, lw=0.0, zorder=0.2
+    )
+    axes.plot(at, surface_at, color=SURFACE, lw=0.8, zorder=0.4)
     for k in np.flatnonzero(floor > bottom):
         corners = [(x[k] - half, bottom[k]), (x[k] + half, bottom[k]), (x[k] + half, floor[k])]
         corners.append((x[k] - half, floor[k]))

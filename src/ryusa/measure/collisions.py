@@ -16,7 +16,7 @@ from ryusa.measure.table import Averaged, Averages, rows_of
 from ryusa.model import Scene
 from ryusa.model.contact_law import damping_ratio_of, hertz_stiffness_of
 
-Partner = Literal["all", "bed", "free", "plane"]
+Partner = Literal["all", "bed", "free", "plane", "wall"]
 
 
 CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight changes the speed by 5 % or more
@@ -122,7 +122,7 @@ def collisions(
     Parameters
     ----------
     run : a run folder.
-    partner : which partners count: "all", "bed" (fixed grains), "free" or "plane".
+    partner : which partners count: "all", "bed" (fixed grains), "free", "plane" or "wall".
     settle : contacts that began before are left out [s]; default the case's `record.settle`.
     end : contacts that parted after are left out [s].
     slowest : contacts that closed more slowly are left out [m/s].
@@ -203,12 +203,13 @@ def _turning(events: NDArray[Any], scene: Scene, expected: Floats) -> Floats:
 
 
 def _of_kind(j: NDArray[np.int64], scene: Scene, partner: Partner) -> NDArray[np.bool_]:
-    bed, planes = scene.n_grain, scene.n_grain + scene.n_fixed
+    bed, planes, walls = scene.n_grain, scene.n_grain + scene.n_fixed, scene.n_partner - scene.n_face
     kinds: dict[str, NDArray[np.bool_]] = {
         "all": np.ones(len(j), dtype=np.bool_),
         "free": j < bed,
         "bed": (j >= bed) & (j < planes),
-        "plane": j >= planes,
+        "plane": (j >= planes) & (j < walls),
+        "wall": j >= walls,
     }
     return kinds[partner]
 

@@ -344,7 +344,7 @@ def _start(run: Run, sign: float, level: float, lane: int | None) -> float:
     foot = float((sign * seen.x[above, 0] + 0.5 * seen.d[above]).max()) if above.any() else math.nan
     first, end = scene.groups.get("gate", (0, 0))
     wall = np.arange(first, end) - scene.n_grain
-    if len(wall) == 0:
+    if len(wall) == 0 or wall[-1] >= scene.n_fixed + scene.n_plane:  # no gate, or one of faces
         return foot
     if wall[-1] < scene.n_fixed:
         gate = float((sign * scene.x_fixed[wall, 0] - 0.5 * scene.d_fixed[wall]).min())

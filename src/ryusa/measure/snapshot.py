@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
-from ryusa.model.wall_shape import in_world, lines_of
+from ryusa.model.wall_shape import in_world, lines_of, outlines_of, within_periods
 from ryusa.printed import ByShape
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
 SHARE = (
     0.99  # of the values that a colour scale covers: a few fast grains would leave the others in one colour
 )
+WIDEST = 600.0  # diameters of the largest grain, up to which a picture is widened to show the dams of a row
+ROOMY = 1.5  # sizes of what grains take up, up to which the walls around them are shown whole
 DRY = 1.0e-6  # depth up to which a segment of a row is dry [m]
 _PLACES, _FRAMES = 20_000_000, 60  # grains and frames from which bounds are taken, of not fewer frames
 
@@ -84,9 +86,10 @@ class Snapshot(ByShape):
     @property
     def bounds(self) -> Bounds:
         """Of this moment."""
-        ends = np.array([_ends(self.x, self.d)])
-        highest = self.surface if math.isfinite(self.surface) else _highest(self.along_row, ends)
         d_max = float(self.d.max(initial=0.0))
+        ends = _with_walls(np.array([_ends(self.x, self.d)]), self.wall_lines)
+        ends = _with_dams(ends, self.along_row, d_max)
+        highest = self.surface if math.isfinite(self.surface) else _highest(self.along_row, ends)
         return _bounds(ends, self.speed, self.spin, (self.bed_x, self.bed_d), self.period, highest, d_max)
 
     def rows(self) -> list[dict[str, object]]:
@@ -166,12 +169,35 @@ def _highest(along_row: Floats, ends: Floats) -> float:
     return float(np.nanmax(along_row[near, 2:], initial=-math.inf))
 
 
+def _with_walls(ends: Floats, lines: Floats) -> Floats:
+    """Ends of grains, (n, 4) as of `_ends`, and those of walls that are not much larger, such as a drum."""
+    if not len(lines):
+        return ends
+    walls = [end(lines[:, :, axis]) for axis in (0, 2) for end in (np.min, np.max)]
+    own = [ends[:, 0].min(), ends[:, 1].max(), ends[:, 2].min(), ends[:, 3].max()]
+    near = all(walls[k + 1] - walls[k] < ROOMY * (own[k + 1] - own[k]) for k in (0, 2))
+    return np.concatenate([ends, [walls]]) if near else ends
+
+
+def _with_dams(ends: Floats, along_row: Floats, d_max: float) -> Floats:
+    """Ends of grains, (n, 4) as of `_ends`, and those of the dams of a row that are not too far from them."""
+    x, bottom, floor, _ = along_row[along_row[:, 2] > along_row[:, 1]].T
+    half = 0.5 * (along_row[1, 0] - along_row[0, 0]) if len(along_row) > 1 else 0.0
+    left, right = float(ends[:, 0].min()), float(ends[:, 1].max())
+    near = np.maximum(right, x + half) - np.minimum(left, x - half) < WIDEST * d_max
+    dams = np.column_stack([x - half, x + half, bottom, floor])[near]
+    return np.concatenate([ends, dams]) if math.isfinite(right) else ends
+
+
 def _lines_of_walls(scene: Scene, t: float) -> Floats:
-    """Ends of the edges of the walls that are there at a time [m], shape (n_line, 2, 3)."""
+    """Ends of the edges of the walls there at a time, inside the periods as grains [m], (n_line, 2, 3)."""
     if scene.walls is None:
         return np.zeros((0, 2, 3))
-    ends, owner = lines_of(scene.walls)
-    return in_world(scene.walls, ends, owner, t)[scene.walls.active[owner]]
+    ends, owner = lines_of(scene.walls, rules=False)
+    sides, round_ = outlines_of(scene.walls, t, np.array([0.0, 1.0, 0.0]))
+    there = scene.walls.active[np.append(owner, round_)]
+    lines = np.concatenate([in_world(scene.walls, ends, owner, t), sides])[there]
+    return within_periods(lines, np.zeros(3), np.array([*scene.period, math.inf]))
 
 
 def bounds(run: Run, lane: int | None = None) -> Bounds:
@@ -200,11 +226,13 @@ def bounds(run: Run, lane: int | None = None) -> Bounds:
         spin.append(np.asarray(run.frames.omega[k])[ids, 1][there])
     water = getattr(run, "water", None)
     rows = [_along_row(run, k) for k in (0, n_frame // 2, n_frame - 1)]
-    highest = max(_highest(one, np.array(ends)) for one in rows) if water is None else water.z_surface.max()
+    d_max = float(scene.d[ids].max(initial=0.0))
+    lines = [_lines_of_walls(scene_at(run, t), t) for t in (float(run.frames.t[0]), float(run.frames.t[-1]))]
+    shown = _with_dams(_with_walls(np.array(ends), np.concatenate(lines)), np.concatenate(rows), d_max)
+    highest = max(_highest(one, shown) for one in rows) if water is None else water.z_surface.max()
     return _bounds(
-        np.array(ends), np.concatenate(speed), np.concatenate(spin),
-        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, float(highest),
-        float(scene.d[ids].max(initial=0.0)),
+        shown, np.concatenate(speed), np.concatenate(spin),
+        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, float(highest), d_max,
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from ryusa.model.welding import sides_of, welded
 
 SIDES = 48
 _RULES = 8  # lines along a cylinder
+_END = 1.0e-6  # of a period: what crosses its end by less lies in it
 
 
 def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
@@ -37,10 +38,10 @@ def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
     return np.concatenate(corners), np.concatenate(owner)
 
 
-def lines_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
+def lines_of(walls: Walls, sides: int = SIDES, *, rules: bool = True) -> tuple[Floats, Ints]:
     """Edges where a smooth surface ends, in the frames of the walls, (n, 2, 3) [m], and the wall of each.
 
-    Rims of round faces, and some lines along a cylinder, by which its turning is seen.
+    Rims of round faces, and by `rules` some lines along a cylinder, by which its turning is seen.
     """
     flat = np.flatnonzero(walls.kind == FaceKind.TRIANGLE)
     corners = triangles_of(walls, 3)[0][: len(flat)]
@@ -50,11 +51,29 @@ def lines_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
         low, high = _rings(walls.face[f], sides)
         some = [np.stack([low[:-1], low[1:]], axis=1)]
         if walls.kind[f] == FaceKind.CYLINDER:
-            rules = slice(0, sides, max(sides // _RULES, 1))
-            some += [np.stack([high[:-1], high[1:]], axis=1), np.stack([low[rules], high[rules]], axis=1)]
+            some.append(np.stack([high[:-1], high[1:]], axis=1))
+            chosen = slice(0, sides if rules else 0, max(sides // _RULES, 1))
+            some.append(np.stack([low[chosen], high[chosen]], axis=1))
         found += some
         owners += [np.full(len(one), walls.wall[f]) for one in some]
     return np.concatenate(found), np.concatenate(owners)
+
+
+def outlines_of(walls: Walls, t: float, sight: Floats) -> tuple[Floats, Ints]:
+    """Lines along cylinders where they end for an eye that looks along a unit vector.
+
+    They are in the world at time t [s], (n, 2, 3) [m], with the wall of each.
+    """
+    found, owner = [np.zeros((0, 2, 3))], list[int]()
+    for f in np.flatnonzero(walls.kind == FaceKind.CYLINDER):
+        turn, shift = pose(walls.motion[walls.wall[f]], t)
+        centre, axis = turn @ walls.face[f, :3] + shift, turn @ walls.face[f, 3:6]
+        out = np.cross(axis, sight)
+        if (across := float(np.linalg.norm(out))) > _END:  # else it is seen as a circle
+            both = centre + float(walls.face[f, 6]) / across * np.stack([out, -out])
+            found.append(np.stack([both, both + float(walls.face[f, 7]) * axis], axis=1))
+            owner += [int(walls.wall[f])] * 2
+    return np.concatenate(found), np.array(owner, np.int64)
 
 
 def in_world(walls: Walls, points: Floats, owner: Ints, t: float) -> Floats:
@@ -65,6 +84,56 @@ def in_world(walls: Walls, points: Floats, owner: Ints, t: float) -> Floats:
         mine = owner == w
         placed[mine] = points[mine] @ turn.T + shift
     return placed
+
+
+def cut_off(corners: Floats, room: Floats) -> Floats:
+    """Part of a polygon or a line, (n, 3) [m], where the room at its corners, (n,), is not negative.
+
+    >>> cut_off(np.array([[0.0, 0, 0], [2, 0, 0], [0, 2, 0]]), np.array([1.0, -1, 1])).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 2.0, 0.0]]
+    """
+    kept = list[Floats]()
+    for k in range(len(corners)):
+        after = (k + 1) % len(corners)
+        if room[k] >= 0.0:
+            kept.append(corners[k])
+        if (room[k] >= 0.0) != (room[after] >= 0.0):
+            kept.append(corners[k] + (corners[after] - corners[k]) * (room[k] / (room[k] - room[after])))
+    some = kept[:2] if len(corners) == 2 else kept  # a line is cut on its way there and on its way back
+    return np.array(some).reshape(-1, 3)
+
+
+def within_periods(shapes: Floats, low: Floats, period: Floats) -> Floats:
+    """Lines (n, 2, 3) or triangles (n, 3, 3) [m], cut where a period ends and each part taken into it.
+
+    Parameters
+    ----------
+    low, period : begin and length of the period along each axis [m], shape (3,); inf where there is none.
+
+    >>> line = np.array([[[0.5, 0.0, 0.0], [1.5, 0.0, 0.0]]])
+    >>> within_periods(line, np.zeros(3), np.array([1.0, np.inf, np.inf]))[:, :, 0].tolist()
+    [[0.5, 1.0], [0.0, 0.5]]
+    """
+    for axis in np.flatnonzero(np.isfinite(period)):
+        place = (shapes[:, :, axis] - low[axis]) / period[axis]
+        least, most = place.min(axis=1), place.max(axis=1)
+        first = np.floor(least + _END)
+        last = np.maximum(np.ceil(most - _END) - 1.0, first)
+        inside = (least > -_END) & (most < 1.0 + _END)  # a face in an end of the period stays there
+        first[inside] = last[inside] = 0.0
+        whole = shapes[first == last]
+        whole[:, :, axis] -= period[axis] * first[first == last, None]
+        found = [whole]
+        for k in np.flatnonzero(first < last):
+            for image in np.arange(first[k], last[k] + 1.0):
+                part = shapes[k].copy()
+                part[:, axis] -= period[axis] * image
+                part = cut_off(part, part[:, axis] - low[axis])
+                part = cut_off(part, low[axis] + period[axis] - part[:, axis])
+                fan = [[0, 1]] if len(shapes[k]) == 2 else [[0, a, a + 1] for a in range(1, len(part) - 1)]
+                found += [part[None, one] for one in fan]
+        shapes = np.concatenate(found)
+    return shapes
 
 
 def _rings(face: Floats, sides: int) -> tuple[Floats, Floats]:

@@ -11,6 +11,7 @@ from ryusa.measure.pooled import mean_of_runs
 from ryusa.measure.statistics import Average
 from ryusa.report.headlines import Headline, taken
 from ryusa.results import Results
+from ryusa.results.label import run_label
 from ryusa.study.interval import Interval, not_negative, over_seeds, short
 
 MOST = 5  # sentences
@@ -89,7 +90,7 @@ def answer(
 def _verdict(runs: Sequence[Results], every: Sequence[Average], unsteady: bool, alone: bool) -> str:
     n, seeds = len(runs), ", ".join(str(one.provenance.get("seed")) for one in runs)
     said: list[str] = []
-    unfinished = [one.folder.resolve().name for one in runs if not one.complete]
+    unfinished = [run_label(one) for one in runs if not one.complete]
     if unfinished:
         said.append(f"Not complete: {', '.join(unfinished)}.")
     if any("--try" in (one.provenance.get("command") or ()) for one in runs):

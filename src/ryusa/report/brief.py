@@ -5,7 +5,9 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ryusa.cases.questions import CaseQuestion
 from ryusa.catalogue import PICTURES
@@ -15,6 +17,7 @@ from ryusa.report.contents import Drawing, RunContents, draw_picture, explain_va
 from ryusa.report.covered import conditions, not_covered, rests_on
 from ryusa.report.question import question_of
 from ryusa.results import Results
+from ryusa.results.label import run_label
 from ryusa.results.presentation import _saved
 from ryusa.running.resume import changes_of
 from ryusa.study.html import template
@@ -25,6 +28,13 @@ BROWSERS = (
     "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge",
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
 )  # fmt: skip
+SHEET = 180.0  # width of what is written on the sheet [mm]
+LOWER: dict[str, tuple[tuple[dict[str, Any], str], ...]] = {  # for a sheet with less room, and what they show
+    "long_section": (
+        ({"height": 3.3}, ""),
+        ({"height": 2.0, "alone": True}, "bed, water and energy line along a row of columns"),
+    ),
+}
 PATIENCE = 120.0  # longest time for printing [s]
 
 
@@ -52,7 +62,7 @@ def brief_page(
     _check(runs)
     question, _ = question_of(runs[0].case, like)
     about = RunContents(
-        title=str(runs[0].case.get("title") or runs[0].folder.resolve().name), folder="", status="",
+        title=str(runs[0].case.get("title") or runs[0].folder.resolve().name), label="", folder="", status="",
         complete=True, rows=[],
     )  # fmt: skip
     explain_values(about, runs[0])
@@ -60,8 +70,9 @@ def brief_page(
         title=about.title,
         question=question.asked,
         answer=answer(runs, question, begin, reach),
-        picture=_picture(about, runs[0], question),
-        of_run=runs[0].folder.resolve().name if len(runs) > 1 else "",
+        pictures=_pictures(about, runs[0], question),
+        sheet=SHEET,
+        of_run=run_label(runs[0]) if len(runs) > 1 else "",
         conditions=conditions(runs, about.values),
         rests_on=rests_on(runs, about.values),
         not_covered=not_covered(runs),
@@ -86,16 +97,18 @@ def _check(runs: Sequence[Results]) -> None:
         raise ResultsError(f"seeds {', '.join(map(str, seeds))}: runs of one seed are one run; give others")
 
 
-def _picture(about: RunContents, results: Results, question: CaseQuestion) -> Drawing | None:
-    """The first picture of the question that the run allows."""
+def _pictures(about: RunContents, results: Results, question: CaseQuestion) -> list[Drawing]:
+    """The first picture of the question that the run allows, and lower ones of the same, by height."""
     entries = {one.name: one for one in PICTURES}
     for name in question.pictures:
         try:
-            draw_picture(about, results, entries[name])
+            for how, doc in (({}, ""), *LOWER.get(name, ())):
+                entry = entries[name]
+                draw_picture(about, results, replace(entry, doc=doc or entry.doc), **how)
         except RyusaError:
             continue
-        return about.drawings[-1]
-    return None
+        return about.drawings
+    return []
 
 
 def write_pdf(page: str, path: Path) -> int:

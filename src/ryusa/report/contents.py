@@ -16,6 +16,7 @@ from ryusa.measure._run import settle_time
 from ryusa.measure.long_section import LongSection
 from ryusa.measure.table import ROUND_OFF
 from ryusa.results import Results, schema
+from ryusa.results.label import run_label
 from ryusa.running.inspection import inspection_rows, state_of
 from ryusa.study.html import embedded
 from ryusa.view.page import encoded
@@ -68,6 +69,7 @@ class Drawing:
     doc: str
     address: str
     wide: bool  # its letters need the whole width of the page
+    height: float  # over its width [-]
 
 
 @dataclass
@@ -75,6 +77,7 @@ class RunContents:
     """All that the report says of one run."""
 
     title: str
+    label: str
     folder: str
     status: str
     complete: bool
@@ -92,6 +95,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     """Collect what the report says of a run; what cannot be had is listed with its reason."""
     found = RunContents(
         title=str(results.case.get("title") or results.folder.resolve().name),
+        label=run_label(results),
         folder=results.folder.resolve().name,
         status=state_of(results),
         complete=results.complete,
@@ -266,18 +270,18 @@ def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
     return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at, *[some] * (every > 1)))
 
 
-def draw_picture(found: RunContents, results: Results, entry: PictureEntry) -> None:
-    """Draw a picture of a run and add it; an error says why there is none."""
+def draw_picture(found: RunContents, results: Results, entry: PictureEntry, **how: Any) -> None:
+    """Draw a picture of a run and add it; an error says why there is none. `how`: options of its function."""
     if entry.settled:
         _need_settled(results)
     if entry.measure:
         source = next(one for one in MEASURES if one.name == entry.measure)
-        figure: Figure = load(entry.function)(called(source)(results))
+        figure: Figure = load(entry.function)(called(source)(results), **how)
     else:
         figure, _ = called(entry)(results)
     held = io.BytesIO()
     with applied():
         figure.savefig(held, format="png", dpi=DPI, pil_kwargs={"compress_level": 0})  # packed by `embedded`
     held.seek(0)
-    wide = float(figure.get_size_inches()[0]) > _ONE_COLUMN
-    found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), wide))
+    width, height = map(float, figure.get_size_inches())
+    found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), width > _ONE_COLUMN, height / width))

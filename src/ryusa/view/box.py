@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
+from ryusa.model.wall_shape import cut_off
 from ryusa.model.walls import box_of as walls_box
 from ryusa.results import Results
 from ryusa.view.flow import surface_line, surfaces
@@ -99,16 +100,10 @@ def plane_in_box(point: Floats, normal: Floats, low: Floats, high: Floats) -> Fl
     side /= np.linalg.norm(side)
     other = np.cross(normal, side)
     reach = 4.0 * float(np.linalg.norm(high - low)) + float(np.linalg.norm(point - low))
-    shape = [point + reach * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    shape = np.array(
+        [point + reach * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    )
     for axis in range(3):
         for sign, end in ((1.0, low[axis]), (-1.0, high[axis])):
-            room = [sign * (corner[axis] - end) + 1.0e-9 * reach for corner in shape]
-            kept: list[Floats] = []
-            for k, corner in enumerate(shape):
-                after = (k + 1) % len(shape)
-                if room[k] >= 0.0:
-                    kept.append(corner)
-                if (room[k] >= 0.0) != (room[after] >= 0.0):
-                    kept.append(corner + (shape[after] - corner) * room[k] / (room[k] - room[after]))
-            shape = kept
-    return np.array(shape).reshape(-1, 3)
+            shape = cut_off(shape, sign * (shape[:, axis] - end) + 1.0e-9 * reach)
+    return shape

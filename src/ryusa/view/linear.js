@@ -67,20 +67,41 @@ class Camera {
 }
 Camera.ANGLE = 0.6;  // of the picture's height as seen from the camera [rad]
 
+// Part of a polygon or a line where the room at its corners is not negative.
+function cutOff(corners, room) {
+  const kept = [];
+  corners.forEach((a, i) => {
+    const b = corners[(i + 1) % corners.length], ia = room(a), ib = room(b);
+    if (ia >= 0) kept.push(a);
+    if ((ia >= 0) !== (ib >= 0)) kept.push(plus(a, minus(b, a), ia / (ia - ib)));
+  });
+  return corners.length === 2 ? kept.slice(0, 2) : kept;
+}
+
+// A line or triangle, cut where a period from 0 ends, with each part taken into it, as in model/wall_shape.py.
+function withinPeriods(shape, period) {
+  return period.reduce((shapes, length, axis) => (!length ? shapes : shapes.flatMap((one) => {
+    const at = one.map((p) => p[axis] / length), end = 1e-6, least = Math.min(...at), most = Math.max(...at), found = [];
+    if (least > -end && most < 1 + end) return [one];
+    const first = Math.floor(least + end), last = Math.max(Math.ceil(most - end) - 1, first);
+    for (let image = first; image <= last; image++) {
+      let part = one.map((p) => p.map((value, k) => (k === axis ? value - image * length : value)));
+      if (first < last) part = cutOff(cutOff(part, (p) => p[axis]), (p) => length - p[axis]);
+      if (one.length === 2) found.push(part);
+      else for (let a = 1; a + 1 < part.length; a++) found.push([part[0], part[a], part[a + 1]]);
+    }
+    return found;
+  })), [shape]);
+}
+
 // Corners of a plane within a box.
 function planeInBox(point, normal, low, high) {
   const side = unit(cross(normal, Math.abs(normal[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0])), other = cross(normal, side);
   const reach = 4 * Math.hypot(...minus(high, low)) + Math.hypot(...minus(point, low));
   let corners = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => plus(plus(point, side, a * reach), other, b * reach));
   for (let k = 0; k < 6 && corners.length; k++) {
-    const axis = k >> 1, inside = (p) => (k & 1 ? high[axis] - p[axis] : p[axis] - low[axis]) + 1e-9 * reach;
-    const kept = [];
-    corners.forEach((a, i) => {
-      const b = corners[(i + 1) % corners.length], ia = inside(a), ib = inside(b);
-      if (ia >= 0) kept.push(a);
-      if ((ia >= 0) !== (ib >= 0)) kept.push(plus(a, minus(b, a), ia / (ia - ib)));
-    });
-    corners = kept;
+    const axis = k >> 1;
+    corners = cutOff(corners, (p) => (k & 1 ? high[axis] - p[axis] : p[axis] - low[axis]) + 1e-9 * reach);
   }
   return corners;
 }
@@ -101,12 +122,13 @@ function poseOf(motion, t) {
   };
 }
 
-// Points of one wall, `count` to each face or line, in the scene.
-function placed(points, owner, wall, count, place) {
+// Points of one wall, `count` to each face or line, in the scene and inside its periods.
+function placed(points, owner, wall, count, place, period) {
   const found = [];
   for (let k = 0; k < owner.length; k++) {
     if (owner[k] !== wall) continue;
-    for (let a = 3 * count * k; a < 3 * count * (k + 1); a += 3) found.push(place([points[a], points[a + 1], points[a + 2]]));
+    const shape = Array.from({ length: count }, (_, c) => place([...points.subarray(3 * (count * k + c), 3 * (count * k + c + 1))]));
+    found.push(...withinPeriods(shape, period).flat());
   }
   return found;
 }

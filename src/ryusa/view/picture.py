@@ -8,7 +8,7 @@ import matplotlib as mpl
 import numpy as np
 
 from ryusa.model import Scene
-from ryusa.model.wall_shape import in_world, lines_of, triangles_of
+from ryusa.model.wall_shape import in_world, lines_of, triangles_of, within_periods
 from ryusa.results import Results
 from ryusa.view.box import Floats, edges_of, plane_in_box
 from ryusa.view.camera import Camera
@@ -115,7 +115,7 @@ class Painter:
             corners = plane_in_box(scene.plane_point[plane], scene.plane_normal[plane], low, high)
             if len(corners):
                 face(corners, WALL, WALL_ALPHA, WALL)
-        self._add_walls(scene, t, line, face)
+        self._add_walls(scene, t, low, line, face)
         self._add_row(k, share, low, high, line, face)
         if len(self._surfaces) and low[2] < (z := float(self._surfaces[nearer])) <= high[2]:
             level = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
@@ -139,8 +139,8 @@ class Painter:
         x[ids] = (before if share < 0.5 else after)[ids]
         return x
 
-    def _add_walls(self, scene: Scene, t: float, line: Any, face: Any) -> None:
-        """Edges of the walls that are there, and their faces where they are few."""
+    def _add_walls(self, scene: Scene, t: float, low: Floats, line: Any, face: Any) -> None:
+        """Edges of the walls that are there, and their faces if few, in the periods from `low`."""
         walls = scene.walls
         if walls is None:
             return
@@ -149,9 +149,9 @@ class Painter:
         corners, of, ends, end_of = self._walls
         there = walls.active
         if len(corners) <= MOST_FACES:
-            for one in in_world(walls, corners, of, t)[there[of]]:
+            for one in within_periods(in_world(walls, corners, of, t)[there[of]], low, self._period):
                 face(one, WALL, THIN_ALPHA, None)
-        for one in in_world(walls, ends, end_of, t)[there[end_of]]:
+        for one in within_periods(in_world(walls, ends, end_of, t)[there[end_of]], low, self._period):
             line(one, WALL)
 
     def _add_row(self, k: int, share: float, low: Floats, high: Floats, line: Any, face: Any) -> None:

@@ -214,8 +214,8 @@ class Viewer {
     scene.walls.forEach((motion, w) => {
       if (!motion) return;
       const place = poseOf(motion, this.time), { wall_faces, wall_face_of, wall_lines, wall_line_of } = this.arrays;
-      painter.drawPlain(placed(wall_faces, wall_face_of, w, 3, place), [0.5, 0.47, 0.42, 0.12], "triangles");
-      painter.drawPlain(placed(wall_lines, wall_line_of, w, 2, place), [0.5, 0.47, 0.42, 1], "lines");
+      painter.drawPlain(placed(wall_faces, wall_face_of, w, 3, place, this.period), [0.5, 0.47, 0.42, 0.12], "triangles");
+      painter.drawPlain(placed(wall_lines, wall_line_of, w, 2, place, this.period), [0.5, 0.47, 0.42, 1], "lines");
     });
     const surface = this.surface(nearest);
     if (surface !== undefined && !this.arrays.line) {

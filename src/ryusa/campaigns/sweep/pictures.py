@@ -79,19 +79,19 @@ def drawn_effects(
     panels = [next(iter(axis.choices)) for axis in design.axes]  # the first of keys that change together
     if design.kind in SAMPLED:
         panels = list(known)
-    names = dict(zip(known, short_names(list(known)), strict=True))
+    names = {key: name.replace("_", " ") for key, name in zip(known, short_names(list(known)), strict=True)}
     grouped = design.kind not in SAMPLED and len(panels) > 1
     axes, places, groups = [], [], []
     for k, key in enumerate(panels):
         other = panels[(k + 1) % len(panels)] if grouped else ""
-        axis, place = _axis(known[key], names[other] if other else "")
+        axis, place = _axis(known[key], names[key], names[other] if other else "")
         axes.append(axis)
         places.append(place)
         groups.append(known[other].written if other else ("",) * len(design.settings))
     pictures: dict[str, Figure] = {}
     for one in quantities:
         points = [_point(one, k, places, groups) for k in range(len(design.settings)) if one.runs[k]]
-        words = f"{one.measure}: {one.name}  ({printed_unit(one.unit)})"
+        words = f"{one.measure}: {one.name.replace('_', ' ')}  ({printed_unit(one.unit)})"
         if points:
             pictures[f"{one.measure}-{_plain(one.name)}"] = effects(
                 axes, points, words, joined=design.kind not in SAMPLED, error=BARS
@@ -127,18 +127,16 @@ def _point(
     )  # fmt: skip
 
 
-def _axis(column: SweepColumn, legend: str) -> tuple[EffectAxis, Sequence[float]]:
+def _axis(column: SweepColumn, name: str, legend: str) -> tuple[EffectAxis, Sequence[float]]:
     """Axis of a key, and the place of every setting along it, in the unit in which it was written."""
     numbers = [one for one in column.values if isinstance(one, (int, float)) and not isinstance(one, bool)]
     if len(numbers) < len(column.values):
         words = tuple(dict.fromkeys(column.written))
-        return EffectAxis(column.key, words, legend=legend), [
-            float(words.index(one)) for one in column.written
-        ]
+        return EffectAxis(name, words, legend=legend), [float(words.index(one)) for one in column.written]
     unit, scale = _written_unit(column)
     places = [float(one) / scale for one in numbers]
     log = min(places) > 0.0 and max(places) > WIDE * min(places)
-    return EffectAxis(f"{column.key}  ({printed_unit(unit)})", (), log, legend), places
+    return EffectAxis(f"{name}  ({printed_unit(unit)})", (), log, legend), places
 
 
 def _written_unit(column: SweepColumn) -> tuple[str, float]:
