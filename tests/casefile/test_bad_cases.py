@@ -63,6 +63,11 @@ BAD = [
     ("timeline", "[{ at = '0.05 s', friction = 1 }, { at = '0.01 s', friction = 0 }]", "in order of time"),
     ("timeline", "[{ at = '5 s', friction = 1 }]", "timeline.0.at = '5 s': comes after stop.time, 0.1 s"),
     ("record.frames", "'1 ns'", "record.frames = '1 ns': must be at least one step"),
+    (
+        "record.frames",
+        "'10 s'",
+        "record.frames = '10 s': must be at most stop.time, 0.1 s: the run would keep",
+    ),
     ("planes", "[{ name = 'a', point = ['0 m', '0 m', '0 m'], normal = [0, 0, 0] }]", "must not be zero"),
     ("planes", "5", "must be a list"),
     ("domain.period_y", "'10 cm'", "no effect in a plane scene"),

@@ -168,6 +168,15 @@ def test_an_existing_run_is_refused_unless_overwritten(ryusa_: Any, drop: str) -
     assert ryusa_("run", drop, *short, "--overwrite").code == 0
 
 
+@pytest.mark.parametrize("threads", ["0", "-1"])
+def test_a_run_needs_a_thread(ryusa_: Any, drop: str, threads: str) -> None:
+    ryusa_("run", drop, "--set", "stop.time=2 ms", "-o", "made", "--quiet")
+    for command in (("run", drop), ("resume", "made"), ("warm", drop)):
+        done = ryusa_(*command, "--threads", threads)
+        assert done.code == 2
+        assert f"threads = {threads}: must be at least 1" in done.err
+
+
 def test_quiet_hides_no_warning_of_the_physics(ryusa_: Any, drop: str) -> None:
     soft = ("--set", "contact.stiffness=0.5 N/cm", "--set", "stop.time=0.2 s")
     said = ryusa_("run", drop, *soft, "-o", "loud")
