@@ -14,6 +14,7 @@ from ryusa.errors import CaseError
 
 BED, RIVER, DRY = (case_path(f"{name}.toml") for name in ("bedload_3d", "sabo_dam", "column_collapse"))
 PUMICE = {"grains.density": "500 kg/m3"}
+MIXED = {"materials": "{ lead = { density = '113000 kg/m3' } }", "grains.mixture": "{ lead = 0.5 }"}
 MESH = """
 [[walls]]
 name = "sill"
@@ -57,6 +58,36 @@ def test_what_is_asked_for_is_read() -> None:
     assert read(BED, {"contact.friction": "0.3"}).contact.friction == 0.3  # in place of the angle of the file
     heavy = read(BED, {"grains.density": "1000 kg/m3"})  # neutral: it neither sinks nor rises
     assert heavy.grains.density == 1000.0
+
+
+@pytest.mark.parametrize(
+    "name, changes, words",
+    [
+        (
+            "column_collapse",
+            {"grains.density": "26500 kg/m3"},
+            "grains.density = 2.65e+04 kg/m3: pumice has about 500",
+        ),
+        ("box", MIXED, "materials.lead.density = 1.13e+05 kg/m3"),
+        ("bedload_3d", {"water.density": "1 kg/m3"}, "water.density = 1 kg/m3: fresh water has 1000"),
+        ("movable_bed", {"water.viscosity": "1e-3 m2/s"}, "its dynamic viscosity 1e-3 Pa s"),
+        ("sheet_flow", {"water.depth": "6 m"}, "water.depth = 6 m: 1.5e+03 diameters"),
+        ("river", {"water.depth": "1 mm"}, "water.depth = 0.001 m: 0.1 diameters"),
+        (
+            "river",
+            {"water.row.dams.0.height": "4.5 m"},
+            "m: height over the bottom, in a row of 3 m",
+        ),
+    ],
+)
+def test_values_far_from_those_of_sediment_are_warned_of(name, changes, words) -> None:
+    def said(case: Case) -> str:
+        return "\n".join(
+            f"{row.name} = {row.shown}: {row.origin}" for row in explain(case) if row.section == "unusual"
+        )
+
+    assert words in said(read(case_path(f"{name}.toml"), changes))
+    assert said(read(case_path(f"{name}.toml"))) == ""
 
 
 def river(folder: Path, long: float, high: float, x: str, z: str = "0", unit: str = "m") -> Case:
