@@ -34,12 +34,12 @@ def said(path: Path, changes: dict[str, str]) -> str:
 @pytest.mark.parametrize(
     "path, changes, words",
     [
-        (BED, PUMICE, "grains.density = 500.0: is lighter than the water, 1000 kg/m3"),
+        (BED, PUMICE, "grains.density = '500 kg/m3': is lighter than the water, 1000 kg/m3"),
         (RIVER, PUMICE, "grains.buoyant = true"),
         (BED, {"water.density": "2700 kg/m3"}, "lighter than the water, 2700 kg/m3"),
         (BED, {"grains.buoyant": "true"}, "has no effect: no grain is lighter"),
         (DRY, {"grains.buoyant": "true"}, "has no effect without [water]"),
-        (BED, {"water.depth": "2 mm"}, "covers no grain: at least their diameter, 0.004 m"),
+        (BED, {"water.depth": "2 mm"}, "covers no grain: at least their diameter, 4 mm"),
         (BED, {"motion.slope": "1.5"}, "Were 1.5 deg meant, or '1.5 %'"),
         (DRY, {"motion.slope": "-3"}, "motion.slope_angle = '-71.6 deg'"),
         (BED, {"contact.friction": "0.3", "contact.friction_angle": "20 deg"}, "excludes --set"),

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.checks import check
-from ryusa.casefile.faults import faults
+from ryusa.casefile.faults import as_typed, faults
 from ryusa.casefile.files import toml_text
 from ryusa.casefile.overrides import parsed, with_overrides
 from ryusa.cases import FOLDERS, case_files
@@ -77,7 +77,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     case._text, case._path, case._overrides = text, path, dict(overrides or {})
     found = check(case, data)
     if found:
-        raise CaseError.together(found, source)
+        raise CaseError.together([as_typed(one, data) for one in found], source)
     return case
 
 

@@ -145,7 +145,7 @@ def time(name: str, value: Any, _results: "Results") -> float:
 def window(name: str, value: Any, _results: "Results") -> float:
     """Length of a window or of an average with its unit [s]."""
     found = in_unit(value, "s", name)
-    within(name, found, 1.0e-9, 1.0e9)
+    within(name, found, 1.0e-9, 1.0e9, value)
     return found
 
 

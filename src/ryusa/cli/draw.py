@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def _length(name: str, value: str, results: "Results") -> float:
     found = in_unit(value, "m", name)
-    within(name, found, float(results.scene.d[0]), 1.0e6)
+    within(name, found, float(results.scene.d[0]), 1.0e6, value)
     return found
 
 

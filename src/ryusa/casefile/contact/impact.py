@@ -8,7 +8,7 @@ from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection,
 from ryusa.casefile.builders.values import fill_cells
 from ryusa.casefile.contact.fastest_impacts import overlaps_expected
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import adhesion, is_hertz, overlap_under
+from ryusa.casefile.contact.values import adhesion, is_hertz, largest_overlap, overlap_under
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import water_speed
 from ryusa.errors import CaseError
@@ -45,7 +45,8 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
 
 def check_overlap(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
     """Find contacts so soft that grains pass through one another."""
-    overlap = max(overlaps_expected(case, derived)[0], _at_rest(case, derived)[0])
+    impact = largest_overlap(case, expected_speed(case)[0]) / derived.d
+    overlap = max(impact, _at_rest(case, derived)[0])
     if overlap > 1.0:
         key = "youngs_modulus" if is_hertz(case) else "stiffness"
         yield CaseError(
