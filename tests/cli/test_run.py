@@ -330,7 +330,7 @@ def test_a_stopped_run_is_resumed_by_either_command_and_inspect_shows_its_state(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["resume", "nowhere"], "nowhere: not a run folder of ryusa"),
+        (["resume", "nowhere"], "nowhere: no such run folder"),
         (["inspect", "nowhere"], "nowhere: no such run folder"),
         (["run", "drop.toml", "--checkpoint", "soon"], "soon"),
         (["run", "drop.toml", "--checkpoint", "0 s"], "must be longer than 0 s"),
