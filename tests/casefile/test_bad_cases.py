@@ -185,6 +185,25 @@ def test_invalid_toml_is_reported_with_its_line(text: str) -> None:
         read_text(text.replace('diameter = "0.2 cm"', "diameter = 0.2 cm"))
 
 
+@pytest.mark.parametrize(
+    ("line", "remedy"),
+    [
+        ('rotation = "free"', 'line 11, column 18), rotation = "free": rotation stands twice in its section'),
+        ("[grains]", "[grains]: this section stands twice"),
+        ('file = "a.csv', 'file = "a.csv: a quote is missing'),
+        ("plane = True", "plane = True: write true or false"),
+        ("file = \u201ca.csv\u201d", "write plain quotes"),
+        ("gravity = 0,7", "decimals stand behind a point: gravity = 0.7"),
+        ("gravity = 9.81 m/s2  # here", 'write it in quotes: gravity = "9.81 m/s2"'),
+        ("file = beds", 'write it in quotes: file = "beds"'),
+    ],
+)
+def test_invalid_toml_is_answered_by_its_line_and_a_remedy(text: str, line: str, remedy: str) -> None:
+    with pytest.raises(CaseError) as found:
+        read_text(text.replace('rotation = "locked"', f'rotation = "locked"\n{line}'))
+    assert remedy in str(found.value)
+
+
 def test_a_missing_file_a_folder_and_a_binary_file_are_refused(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="file not found"):
         read(tmp_path / "none.toml")
@@ -193,6 +212,9 @@ def test_a_missing_file_a_folder_and_a_binary_file_are_refused(tmp_path: Path) -
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(CaseError, match="not UTF-8"):
         read(tmp_path / "bytes.toml")
+    (tmp_path / "latin.toml").write_bytes("[grains]\n# gro\u00df\n".encode("latin-1"))
+    with pytest.raises(CaseError, match=r"line 2 holds .* \(byte 14\); save the file as UTF-8"):
+        read(tmp_path / "latin.toml")
     with pytest.raises(CaseError, match="cannot be read"):
         read("a\0b.toml")
 

@@ -13,6 +13,7 @@ from ryusa.campaigns.calibrate.prior import LOG, NORMAL, UNIFORM, Prior
 from ryusa.campaigns.sweep.asked import text_of
 from ryusa.campaigns.sweep.design import span_of
 from ryusa.casefile.files import toml_text
+from ryusa.casefile.toml_faults import encoding_fault, toml_fault
 from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, ParseError
 from ryusa.spelling import nearest_word
@@ -35,16 +36,18 @@ def read_calibration(path: Path) -> CalibrationAsked:
     CaseError : names the key, its value and what is allowed; all faults of the file together.
     ParseError : the file is no TOML.
     """
+    text = ""
     try:
-        data = tomllib.loads(toml_text(path))
+        text = toml_text(path)
+        data = tomllib.loads(text)
     except OSError as error:
         raise CaseError(
             "study", str(path), f"cannot be read ({error.strerror or error}); needs a TOML file"
         ) from None
-    except UnicodeDecodeError:
-        raise ParseError(path.name, 1, 1, "is no text in UTF-8") from None
+    except UnicodeDecodeError as error:
+        raise ParseError(path.name, 1, 1, encoding_fault(error)) from None
     except tomllib.TOMLDecodeError as error:
-        raise ParseError(path.name, 1, 1, f"is no TOML: {error}") from None
+        raise ParseError(path.name, 1, 1, f"is no TOML: {toml_fault(text, error)}") from None
     if "grains" in data:
         raise CaseError(
             "study", path.name, "is a case; a calibration is a file of its own, which names cases "
