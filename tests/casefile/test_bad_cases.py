@@ -82,7 +82,7 @@ BAD = [
     ("water", "{ profile = 'uniform' }", "needs it"),
     ("water", "{ profile = 'still', torque = 'Stokes' }", "needs motion.rotation"),
     ("water", "{ profile = 'still', drag_coefficient = 1.0 }", "has no effect"),
-    ("water", "{ profile = 'log rough', tau_star = 0.3, density = '3 g/cm3' }", "denser than water"),
+    ("water", "{ profile = 'log rough', tau_star = 0.3, density = '2.65 g/cm3' }", "denser than water"),
 ]
 
 

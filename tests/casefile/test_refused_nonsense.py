@@ -13,6 +13,7 @@ from ryusa.cases import case_path
 from ryusa.errors import CaseError
 
 BED, RIVER, DRY = (case_path(f"{name}.toml") for name in ("bedload_3d", "sabo_dam", "column_collapse"))
+HOPS = case_path("saltation.toml")
 PUMICE = {"grains.density": "500 kg/m3"}
 MIXED = {"materials": "{ lead = { density = '113000 kg/m3' } }", "grains.mixture": "{ lead = 0.5 }"}
 MESH = """
@@ -37,6 +38,12 @@ def said(path: Path, changes: dict[str, str]) -> str:
         (BED, PUMICE, "grains.density = '500 kg/m3': is lighter than the water, 1000 kg/m3"),
         (RIVER, PUMICE, "grains.buoyant = true"),
         (BED, {"water.density": "2700 kg/m3"}, "lighter than the water, 2700 kg/m3"),
+        (
+            HOPS,
+            PUMICE | {"grains.buoyant": "true"},
+            "tau_star = 0.3: needs grains denser than water; give u_star",
+        ),
+        (HOPS, {"grains.density": "1 g/cm3"}, "needs grains denser than water; give u_star"),
         (BED, {"grains.buoyant": "true"}, "has no effect: no grain is lighter"),
         (DRY, {"grains.buoyant": "true"}, "has no effect without [water]"),
         (BED, {"water.depth": "2 mm"}, "covers no grain: at least their diameter, 4 mm"),

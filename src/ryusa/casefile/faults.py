@@ -71,6 +71,12 @@ def _fault(one: dict[str, Any], data: dict[str, Any]) -> CaseError:
     value = _value(data, path)
     if kind == "extra_forbidden":
         return _unknown_key((*_plain(one["loc"][:-1]), one["loc"][-1]), data)  # a key may look like a branch
+    if kind == "missing" and isinstance(path[-1], int) and isinstance(short := _value(data, path[:-1]), list):
+        such = f" such as {short[0]!r}" if short else ""
+        allowed = f"needs {path[-1] + 1} entries{such}, and has {len(short)}: the last is missing"
+        return CaseError(dotted(path[:-1]), short, allowed)
+    if kind == "tuple_type" and isinstance(_item(data, path), dict):
+        return CaseError(dotted(path), None, f"must be in double brackets, [[{dotted(path)}]], once for each")
     if kind == "missing":
         return CaseError(dotted(path), None, _missing(path, data))
     if kind in {"union_tag_invalid", "union_tag_not_found"}:
@@ -142,9 +148,14 @@ def _plain(loc: Sequence[str | int]) -> tuple[str | int, ...]:
     return tuple(parts)
 
 
-def _value(data: Any, path: Sequence[str | int]) -> Any:
+def _item(data: Any, path: Sequence[str | int]) -> Any:
     for part in path:
         data = item(data, part)
+    return data
+
+
+def _value(data: Any, path: Sequence[str | int]) -> Any:
+    data = _item(data, path)
     try:
         return None if isinstance(data, dict) or len(repr(data)) > _LONGEST_VALUE else data
     except ValueError:  # a whole number of thousands of digits

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.quantities import Acceleration, PositiveLength, Slope, SlopeAngle
+from ryusa.casefile.quantities import Acceleration, Boolean, PositiveLength, Slope, SlopeAngle
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
 
@@ -23,7 +23,7 @@ class MotionSection(Section):
 
     rotation: Literal["locked", "free"]
     """Whether grains rotate: "free", or "locked" (translation only)."""
-    plane: bool = True
+    plane: Boolean = True
     """true: grains move in the x-z plane only; false: in three dimensions."""
     slope: Slope | None = None
     """Bed slope as a tangent, positive where the bed falls towards +x; 0 when no slope is given."""

@@ -9,6 +9,7 @@ from ryusa.casefile.builders.schema import FromFile, SaltationSection
 from ryusa.casefile.builders.values import counts
 from ryusa.casefile.precision import PrecisionSection
 from ryusa.casefile.quantities import (
+    Boolean,
     Count,
     Duration,
     FrictionAngle,
@@ -95,7 +96,7 @@ class RecordSection(Section):
     grains or where saltations end the run, else none."""
     tracked: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Numbers of the tracked grains, from 0."""
-    forces: bool = False
+    forces: Boolean = False
     """Whether every frame holds the contact forces, which `ryusa measure RUN contact_stress` needs."""
     settle: Moment = 0.0
     """Simulated time before which measures ignore the run."""

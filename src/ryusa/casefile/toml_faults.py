@@ -25,14 +25,14 @@ def encoding_fault(error: UnicodeDecodeError) -> str:
     """Where a file stops being UTF-8, and the remedy."""
     line = error.object[: error.start].count(b"\n") + 1
     return (
-        f"is not UTF-8 text: line {line} holds a character in another encoding (byte {error.start}); save the "
-        "file as UTF-8 in your editor, or write that line without accents"
+        f"is not UTF-8 text: line {line} holds a character in another encoding (byte {error.start}); save "
+        "the file as UTF-8 in your editor, or write that line without accents"
     )
 
 
 def _remedy(said: str, line: str) -> str:
     key = found[1] if (found := _KEY.match(line)) else "the key"
-    if any(sign in line for sign in "“”„‟‘’‚«»"):
+    if any(sign in line for sign in "\u201c\u201d\u201e\u201f\u2018\u2019\u201a\u00ab\u00bb"):
         return "write plain quotes, \" or '"
     if said.startswith("Cannot overwrite"):
         return f"{key} stands twice in its section; leave one of the two out"
@@ -44,6 +44,6 @@ def _remedy(said: str, line: str) -> str:
         return f"decimals stand behind a point: {key} = {found[1]}.{found[2]}"
     if found := _QUANTITY.search(line) or _WORD.search(line):
         return f'write it in quotes: {key} = "{found[1]}"'
-    if line.split("#")[0].count('"') % 2:
+    if line.partition("#")[0].count('"') % 2:
         return "a quote is missing"
     return ""
