@@ -125,6 +125,18 @@ def quantity(text: object, unit: str) -> float:
     return value + 0.0  # no -0.0
 
 
+def span(text: str, unit: str) -> tuple[float, float]:
+    """Two quantities, as `quantity` reads each.
+
+    >>> span("0.5 m to 2 m", "m")
+    (0.5, 2.0)
+    """
+    begin, between, end = text.partition(" to ")
+    if not between:
+        raise UnitError(f'must be two of {_kind(unit)} with their units, such as "0.5 {unit} to 2 {unit}"')
+    return quantity(begin, unit), quantity(end, unit)
+
+
 def _parts(text: str) -> tuple[str, str]:
     """Number and unit of a quantity as written; "" for what is missing."""
     body = plain_signs(text[:LONGEST]).strip()

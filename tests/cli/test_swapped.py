@@ -66,3 +66,9 @@ def test_a_tilde_within_quotes_means_home(tmp_path: Path, monkeypatch) -> None:
     assert (tmp_path / "beds" / "one.toml").is_file() and not (tmp_path / "~").exists()
     assert at_home("--output=~/beds") == f"--output={tmp_path / 'beds'}"
     assert at_home("--title=a ~/ b") == "--title=a ~/ b"
+
+
+def test_an_unquoted_quantity_is_told_of_quotes(capsys) -> None:
+    assert "blank stands in quotes, such as --set 'water.depth=2 cm'" in said_by(
+        capsys, "check", "drop.toml", "--set", "water.depth=2", "cm"
+    ).replace("│ ", "")

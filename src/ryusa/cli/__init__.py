@@ -36,6 +36,12 @@ class Commands(TyperGroup):
         except RyusaError as error:
             typer.echo(f"ryusa: {error}", err=True)
             raise typer.Exit(error.exit_code) from None
+        except Exception as error:  # of click, whose class is private to typer
+            said = getattr(error, "message", "")
+            if "unexpected extra argument" in said:
+                hint = "A value with a blank stands in quotes, such as --set 'water.depth=2 cm'"
+                vars(error)["message"] = f"{said}. {hint}"
+            raise
         except KeyboardInterrupt as error:
             typer.echo(f"ryusa: interrupted{f': {error}' if str(error) else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None

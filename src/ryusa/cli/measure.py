@@ -12,7 +12,7 @@ from typer.core import TyperCommand
 
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import chosen
-from ryusa.cli.chosen import entry_of, keywords, listed, of_row, refuse_swapped, taking
+from ryusa.cli.chosen import entry_of, keywords, listed, naming, of_row, refuse_swapped, taking
 from ryusa.cli.options import open_run, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -193,7 +193,8 @@ def measure(
     for results in opened:
         given = keywords(context, entry, results, CHECKS)
         printed = {name: given.pop(name) for name in entry.printing if name in given}
-        records.append(called(entry)(results, **given))
+        with naming(results, entry.name):
+            records.append(called(entry)(results, **given))
     found: Any = records[0] if len(records) == 1 else _pooled(entry.name, opened, records)
     files = {"--series": (series, _series), "--layers": (layers, _layers)}
     for option, (path, rows_of) in files.items():
