@@ -213,6 +213,11 @@ def test_check_says_what_is_cut_and_what_the_finest_grains_cost() -> None:
     kept = CURVE.share_below(0.006) - 0.2
     grains = CURVE.cut(0.002, 0.006).mean_cube / CURVE.cut(0.0, 0.006).mean_cube * (kept + 0.2) / kept
     assert f"{2.0**1.5:.3g} times as many steps and {grains:.3g} times as many grains" in cut.origin
+    finer = rows["D10"]
+    assert (
+        finer.flag == "warning" and f"of the whole curve {100 * CURVE.diameter(0.1):.3g} cm" in finer.origin
+    )
+    assert all(row.flag == "" for row in explain(inline()) if row.name in {"D10", "D50", "D90"})
     coarse = rows["mass coarser than coarsest, left out"]
     assert coarse.flag == "warning"
     assert coarse.value == pytest.approx(1.0 - CURVE.share_below(0.006))

@@ -82,7 +82,10 @@ class WallTime:
         return f"{self.basis} ({self.kind}){taken}"
 
     def __str__(self) -> str:
-        return f"{self.seconds / HOUR:.3g} h" if self.seconds > HOUR else f"{self.seconds:.3g} s"
+        unit, of = (
+            (HOUR, "h") if self.seconds > HOUR else (60.0, "min") if self.seconds >= 120.0 else (1.0, "s")
+        )
+        return f"{self.seconds / unit:.3g} {of}"
 
 
 def time_expected(case: Case) -> tuple[float, str]:

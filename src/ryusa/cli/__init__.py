@@ -81,8 +81,12 @@ def _options(
     """Simulate grains of sand, gravel or debris in flowing water by the distinct element method."""
 
 
-for _family in _FAMILIES:
-    import_module(_family).register(app)
+try:
+    for _family in _FAMILIES:
+        import_module(_family).register(app)
+except KeyboardInterrupt:  # while modules are loaded
+    typer.echo("ryusa: interrupted", err=True)
+    raise SystemExit(INTERRUPTED) from None
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
