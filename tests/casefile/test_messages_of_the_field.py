@@ -71,6 +71,11 @@ def test_grains_that_would_pass_through_one_another_are_refused(stiffness):
         read(case_path("movable_bed.toml"), {"contact.stiffness": stiffness})
 
 
+def test_single_drops_may_be_as_soft_as_a_study_asks():
+    soft = {"contact.stiffness": "0.001 N/cm", "record.frames": "50 ms", "stop.time": "2 s"}
+    assert read(case_path("drop.toml"), soft).build.kind == "drop"
+
+
 def test_contacts_too_long_for_frames_are_judged_by_the_step():
     changes = {"contact.stiffness": "0.01 N/m", "record.frames": "1 ms"}
     with pytest.raises(
