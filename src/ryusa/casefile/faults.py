@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ryusa.casefile.keys import builders, builders_with, description_at, dotted, item, keys_at, nearest_key
+from ryusa.casefile.motion import too_steep
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
 from ryusa.units import limit_as_typed, si_unit
@@ -91,6 +92,8 @@ def _fault(one: dict[str, Any], data: dict[str, Any]) -> CaseError:
         return CaseError(dotted(path), value, allowed, nearest_word(value, names))
     if kind == "value_error":
         return CaseError(dotted(path), value, str(context.get("error", one["msg"])))
+    if kind in _LIMITS and path[-1] == "slope" and isinstance(value, int | float):
+        return too_steep(dotted(path), value)
     if kind in _LIMITS:
         words, side = _LIMITS[kind]
         limit = limit_as_typed(value, context[side], least=side in {"gt", "ge"})

@@ -110,7 +110,7 @@ Point = tuple[Length, Length, Length]
 
 # the same quantity wherever a case gives it
 STEEPEST = 1.5  # slope angles stay below 86 deg [rad]
-Slope = Annotated[Ratio, Field(ge=-1.0e6, le=1.0e6)]  # those above 1 are asked about, see motion.py
+Slope = Annotated[Ratio, Field(ge=-14, le=14)]
 SlopeAngle = Annotated[Angle, Field(ge=-STEEPEST, le=STEEPEST)]
 FrictionAngle = Annotated[Angle, Field(ge=0, lt=math.pi / 2)]
 FrictionCoefficient = Annotated[Number, Field(ge=0, le=1.0e6)]
