@@ -20,7 +20,7 @@ def known_word(word: str, words: Sequence[str], key: str) -> str:
 def nearest_word(value: object, words: Sequence[str]) -> str | None:
     """Find the known word nearest to what was written; None where none is near.
 
-    Near is a word within one edit per four letters, or one that the written word is a part of:
+    Near is a word within one edit per three letters, or one that the written word is a part of:
 
     >>> nearest_word("diametr", ["density", "diameter"]), nearest_word("tau", ["tau_star", "drag"])
     ('diameter', 'tau_star')
@@ -41,7 +41,7 @@ def is_near(written: str, word: str) -> bool:
     if len(written) == len(word) <= 3:  # as one letter does to a word of three: "gpu" is not "cpu"
         return sorted(written) == sorted(word)
     if abs(len(written) - len(word)) <= 2 and edits(written, word) <= max(
-        1, max(len(written), len(word)) // 4
+        1, max(len(written), len(word)) // 3
     ):
         return True
     return written in word.replace("-", "_").replace(" ", "_").split("_")

@@ -3,7 +3,7 @@
 import math
 import re
 import unicodedata
-from decimal import Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from functools import cache
 from typing import Any
 
@@ -109,25 +109,42 @@ def quantity(text: object, unit: str) -> float:
         raise UnitError(f"needs {_kind(unit)}, written as text with its unit, such as {example}")
     if len(text) > LONGEST:
         raise UnitError(f"longer than {LONGEST} characters; needs {_kind(unit)} such as {example}")
-    body = plain_signs(text).strip()
+    number, written = _parts(text)
+    if number and (comma := _DECIMAL_COMMA.match(plain_signs(text).strip())):
+        rest = plain_signs(text).strip()[comma.end() :]
+        raise UnitError(f"decimals stand behind a point: write '{comma.group().replace(',', '.')}{rest}'")
+    if not number:
+        raise UnitError(f"needs {_kind(unit)}: a finite number and its unit, such as {example}")
+    if not written:
+        raise UnitError(f"missing unit: needs {_kind(unit)}, such as {example}")
+    value = float(Decimal(number) * Decimal(repr(_factor(written, unit))))
+    if not math.isfinite(value):
+        raise UnitError(f"too large a number; needs {_kind(unit)}, such as {example}")
+    if value == 0.0 and Decimal(number) != 0:
+        raise UnitError(f"too small a number; needs {_kind(unit)}, such as {example}")
+    return value + 0.0  # no -0.0
+
+
+def span(text: str, unit: str) -> tuple[float, float]:
+    """Two quantities, as `quantity` reads each.
+
+    >>> span("0.5 m to 2 m", "m")
+    (0.5, 2.0)
+    """
+    begin, between, end = text.partition(" to ")
+    if not between:
+        raise UnitError(f'must be two of {_kind(unit)} with their units, such as "0.5 {unit} to 2 {unit}"')
+    return quantity(begin, unit), quantity(end, unit)
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """Number and unit of a quantity as written; "" for what is missing."""
+    body = plain_signs(text[:LONGEST]).strip()
     if fraction := _FRACTION.match(body):
         sign, whole, top, below = fraction.groups()
         body = f"{sign}{int(whole or 0) + int(top) / int(below):.17g} {body[fraction.end() :]}"
     found = _NUMBER.match(body)
-    if found is not None and (comma := _DECIMAL_COMMA.match(body)):
-        point = comma.group().replace(",", ".")
-        raise UnitError(f"decimals stand behind a point: write '{point}{body[comma.end() :]}'")
-    if found is None:
-        raise UnitError(f"needs {_kind(unit)}: a finite number and its unit, such as {example}")
-    written = body[found.end() :].strip()
-    if not written:
-        raise UnitError(f"missing unit: needs {_kind(unit)}, such as {example}")
-    value = float(Decimal(found.group()) * Decimal(repr(_factor(written, unit))))
-    if not math.isfinite(value):
-        raise UnitError(f"too large a number; needs {_kind(unit)}, such as {example}")
-    if value == 0.0 and Decimal(found.group()) != 0:
-        raise UnitError(f"too small a number; needs {_kind(unit)}, such as {example}")
-    return value + 0.0  # no -0.0
+    return (found.group(), body[found.end() :].strip()) if found else ("", "")
 
 
 def plain_signs(text: str) -> str:
@@ -152,14 +169,36 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     return f"{value / _to_si(unit)[0]:.{digits}g} {unit}"
 
 
+def limit_as_typed(text: object, limit: float, *, least: bool, unit: str = "") -> str:
+    """A limit in SI as who typed a quantity would write it; without a unit where the text has none.
+
+    Parameters
+    ----------
+    text : what was typed.
+    limit : in the SI unit of the text, or in `unit`.
+    least : whether the limit is a lower one; it is rounded to its permitted side.
+
+    >>> limit_as_typed("95 deg", math.pi / 2, least=False), limit_as_typed("-0.2 cm", 1e-7, least=True)
+    ('90 deg', '1e-05 cm')
+    >>> limit_as_typed("89 deg", 1.5, least=False), limit_as_typed("-5 cm", 0.0, least=True)
+    ('85.94 deg', '0 cm')
+    """
+    written = _parts(text)[1] if isinstance(text, str) else ""
+    try:
+        factor = _to_si(written)[0] / (_to_si(unit)[0] if unit else 1.0) if written else 1.0
+    except UnitError:
+        written, factor = "", 1.0
+    side = Context(prec=4, rounding=ROUND_CEILING if least else ROUND_FLOOR)
+    return f"{float(side.create_decimal(f'{limit / factor:.12g}')):g} {written}".strip()
+
+
 def si_unit(text: str) -> str:
     """SI unit of a quantity as written; "" for a number without one, and for what is no quantity.
 
     >>> si_unit("0.2 cm"), si_unit("100 N/cm"), si_unit("5 %"), si_unit("free")
     ('m', 'N/m', '', '')
     """
-    found = _NUMBER.match(text.strip())
-    written = text.strip()[found.end() :].strip() if found else ""
+    written = _parts(text)[1]
     try:
         dimension = _to_si(written)[1] if written else ()
     except UnitError:
@@ -179,6 +218,7 @@ def _example(unit: str) -> str:
         "s": "1 ms",
         "m/s": "0.6 m/s",
         "N s/m": "0.001 N s/cm",
+        "byte": "5 MB",
     }
     return f"'{examples.get(unit, f'1 {unit}')}'"
 

@@ -90,16 +90,16 @@ def test_a_plane_flume_is_one_slab_wide() -> None:
 @pytest.mark.parametrize(
     ("keys", "others", "key", "says"),
     [
-        ("width='5 mm'", {}, "build.width", "at least 0.006"),
-        ("walls=false; width='1 cm'", {}, "build.width", "at least 0.018"),
-        ("length='1 cm'", {}, "build.length", "at least 0.018"),
+        ("width='5 mm'", {}, "build.width", "at least 6 mm"),
+        ("walls=false; width='1 cm'", {}, "build.width", "at least 1.8 cm"),
+        ("length='1 cm'", {}, "build.length", "at least 1.8 cm"),
         ("", {"motion.plane": "true"}, "build.width", "plane scene"),
         ("layers=0.001", {}, "build.layers", "no grain"),
         ("waves=1", {}, "build.wave_height", "missing"),
         ("wave_height='1 cm'", {}, "build.waves", "missing"),
         ("waves=7; wave_height='1 cm'", {}, "build.waves", "at most 6: a wave must be 8 grains long"),
-        ("waves=1; wave_height='5.6 cm'", {}, "build.wave_height", "at most 0.05532 m"),
-        ("waves=1; wave_height='1 cm'; layers=1", {}, "build.wave_height", "at most 0 m"),
+        ("waves=1; wave_height='5.6 cm'", {}, "build.wave_height", "at most 5.532 cm"),
+        ("waves=1; wave_height='1 cm'; layers=1", {}, "build.wave_height", "at most 0 cm"),
         ("waves=-1; wave_height='1 cm'", {}, "build.waves", "at least 0"),
     ],
 )

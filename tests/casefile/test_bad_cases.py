@@ -63,6 +63,11 @@ BAD = [
     ("timeline", "[{ at = '0.05 s', friction = 1 }, { at = '0.01 s', friction = 0 }]", "in order of time"),
     ("timeline", "[{ at = '5 s', friction = 1 }]", "timeline.0.at = '5 s': comes after stop.time, 0.1 s"),
     ("record.frames", "'1 ns'", "record.frames = '1 ns': must be at least one step"),
+    (
+        "record.frames",
+        "'10 s'",
+        "record.frames = '10 s': must be at most stop.time, 0.1 s: the run would keep",
+    ),
     ("planes", "[{ name = 'a', point = ['0 m', '0 m', '0 m'], normal = [0, 0, 0] }]", "must not be zero"),
     ("planes", "5", "must be a list"),
     ("domain.period_y", "'10 cm'", "no effect in a plane scene"),
@@ -77,7 +82,7 @@ BAD = [
     ("water", "{ profile = 'uniform' }", "needs it"),
     ("water", "{ profile = 'still', torque = 'Stokes' }", "needs motion.rotation"),
     ("water", "{ profile = 'still', drag_coefficient = 1.0 }", "has no effect"),
-    ("water", "{ profile = 'log rough', tau_star = 0.3, density = '3 g/cm3' }", "denser than water"),
+    ("water", "{ profile = 'log rough', tau_star = 0.3, density = '2.65 g/cm3' }", "denser than water"),
 ]
 
 
@@ -180,6 +185,25 @@ def test_invalid_toml_is_reported_with_its_line(text: str) -> None:
         read_text(text.replace('diameter = "0.2 cm"', "diameter = 0.2 cm"))
 
 
+@pytest.mark.parametrize(
+    ("line", "remedy"),
+    [
+        ('rotation = "free"', 'line 11, column 18), rotation = "free": rotation stands twice in its section'),
+        ("[grains]", "[grains]: this section stands twice"),
+        ('file = "a.csv', 'file = "a.csv: a quote is missing'),
+        ("plane = True", "plane = True: write true or false"),
+        ("file = \u201ca.csv\u201d", "write plain quotes"),
+        ("gravity = 0,7", "decimals stand behind a point: gravity = 0.7"),
+        ("gravity = 9.81 m/s2  # here", 'write it in quotes: gravity = "9.81 m/s2"'),
+        ("file = beds", 'write it in quotes: file = "beds"'),
+    ],
+)
+def test_invalid_toml_is_answered_by_its_line_and_a_remedy(text: str, line: str, remedy: str) -> None:
+    with pytest.raises(CaseError) as found:
+        read_text(text.replace('rotation = "locked"', f'rotation = "locked"\n{line}'))
+    assert remedy in str(found.value)
+
+
 def test_a_missing_file_a_folder_and_a_binary_file_are_refused(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="file not found"):
         read(tmp_path / "none.toml")
@@ -188,6 +212,9 @@ def test_a_missing_file_a_folder_and_a_binary_file_are_refused(tmp_path: Path) -
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(CaseError, match="not UTF-8"):
         read(tmp_path / "bytes.toml")
+    (tmp_path / "latin.toml").write_bytes("[grains]\n# gro\u00df\n".encode("latin-1"))
+    with pytest.raises(CaseError, match=r"line 2 holds .* \(byte 14\); save the file as UTF-8"):
+        read(tmp_path / "latin.toml")
     with pytest.raises(CaseError, match="cannot be read"):
         read("a\0b.toml")
 

@@ -83,9 +83,10 @@ BAD = [
     (DISC + UP, "walls.0.surface_velocity = [0.0, 0.0, 0.5]: is normal to the wall 'table'"),
     (FLOOR + move(UP), "timeline.0.move.surface_velocity = [0.0, 0.0, 0.5]: is normal to the wall 'floor'"),
     (FLOOR.replace('"rectangle"', '"ridges"\nnumber = 5\nheight = "1 mm"') + RUNS,
-     "walls.0.surface_velocity = [0.5, 0.0, 0.0]: cannot run over ridges, which would stand still: give vel"),
+     "walls.0.surface_velocity = ['0.5 m/s', '0 m/s', '0 m/s']: cannot run over ridges, which would "
+     "stand still: give vel"),
     (FLOOR.replace('"rectangle"', '"ridges"\nnumber = 5\nheight = "1 mm"') + move(RUNS),
-     "timeline.0.move.surface_velocity = [0.5, 0.0, 0.0]: cannot run over ridges"),
+     "timeline.0.move.surface_velocity = ['0.5 m/s', '0 m/s', '0 m/s']: cannot run over ridges"),
     (TUBE + RUNS, "walls.0.surface_velocity = [0.5, 0.0, 0.0]: runs across the axis of the cylinder 'tube'"),
     (FLOOR + RUNS.replace("0.5 m/s", "9 km/s"), "runs at 9e+03 m/s, with which a grain goes too far in a st"),
     (FLOOR + 'servo = { direction = [0, 0, 1], force = "1 N", max_speed = "1 cm/s" }\n' + move(RUNS),

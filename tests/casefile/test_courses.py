@@ -117,7 +117,7 @@ POINTS = '[["0 s", "0.01 m2/s"], ["5 s", "0.02 m2/s"]]'
         ),
         (
             {"upstream": f'hydrograph = {POINTS}, depth = "5 cm"'},
-            "water.row.upstream.depth = 0.05: would hold the depth",
+            "water.row.upstream.depth = '5 cm': would hold the depth",
         ),
         (
             {

@@ -4,6 +4,7 @@ import pytest
 
 from ryusa.build import build
 from ryusa.casefile.read import read
+from ryusa.cases import case_path
 from ryusa.errors import CaseError
 
 CASE = """
@@ -62,3 +63,22 @@ def test_a_grain_that_does_overlap_is_still_named(tmp_path):
 def test_a_very_soft_spring_blames_itself(tmp_path, law, key):
     with pytest.raises(CaseError, match=f"{key}.*so small that the shortest contact lasts"):
         read(case_of(tmp_path, law=law))
+
+
+@pytest.mark.parametrize("stiffness", ["0.01 N/m", "{ collision_time = '0.1 s' }"])
+def test_grains_that_would_pass_through_one_another_are_refused(stiffness):
+    with pytest.raises(CaseError, match=r"contact\.stiffness.*overlap by .* diameters and pass through"):
+        read(case_path("movable_bed.toml"), {"contact.stiffness": stiffness})
+
+
+def test_single_drops_may_be_as_soft_as_a_study_asks():
+    soft = {"contact.stiffness": "0.001 N/cm", "record.frames": "50 ms", "stop.time": "2 s"}
+    assert read(case_path("drop.toml"), soft).build.kind == "drop"
+
+
+def test_contacts_too_long_for_frames_are_judged_by_the_step():
+    changes = {"contact.stiffness": "0.01 N/m", "record.frames": "1 ms"}
+    with pytest.raises(
+        CaseError, match=r"lasts 0\.064 s and a step 0\.0064 s, longer than record\.frames, 0\.001 s"
+    ):
+        read(case_path("movable_bed.toml"), changes)

@@ -13,7 +13,9 @@ from ryusa.cases import case_path
 from ryusa.errors import CaseError
 
 BED, RIVER, DRY = (case_path(f"{name}.toml") for name in ("bedload_3d", "sabo_dam", "column_collapse"))
+HOPS = case_path("saltation.toml")
 PUMICE = {"grains.density": "500 kg/m3"}
+MIXED = {"materials": "{ lead = { density = '113000 kg/m3' } }", "grains.mixture": "{ lead = 0.5 }"}
 MESH = """
 [[walls]]
 name = "sill"
@@ -33,12 +35,18 @@ def said(path: Path, changes: dict[str, str]) -> str:
 @pytest.mark.parametrize(
     "path, changes, words",
     [
-        (BED, PUMICE, "grains.density = 500.0: is lighter than the water, 1000 kg/m3"),
+        (BED, PUMICE, "grains.density = '500 kg/m3': is lighter than the water, 1000 kg/m3"),
         (RIVER, PUMICE, "grains.buoyant = true"),
         (BED, {"water.density": "2700 kg/m3"}, "lighter than the water, 2700 kg/m3"),
+        (
+            HOPS,
+            PUMICE | {"grains.buoyant": "true"},
+            "tau_star = 0.3: needs grains denser than water; give u_star",
+        ),
+        (HOPS, {"grains.density": "1 g/cm3"}, "needs grains denser than water; give u_star"),
         (BED, {"grains.buoyant": "true"}, "has no effect: no grain is lighter"),
         (DRY, {"grains.buoyant": "true"}, "has no effect without [water]"),
-        (BED, {"water.depth": "2 mm"}, "covers no grain: at least their diameter, 0.004 m"),
+        (BED, {"water.depth": "2 mm"}, "covers no grain: at least their diameter, 4 mm"),
         (BED, {"motion.slope": "1.5"}, "Were 1.5 deg meant, or '1.5 %'"),
         (DRY, {"motion.slope": "-3"}, "motion.slope_angle = '-71.6 deg'"),
         (BED, {"contact.friction": "0.3", "contact.friction_angle": "20 deg"}, "excludes --set"),
@@ -57,6 +65,36 @@ def test_what_is_asked_for_is_read() -> None:
     assert read(BED, {"contact.friction": "0.3"}).contact.friction == 0.3  # in place of the angle of the file
     heavy = read(BED, {"grains.density": "1000 kg/m3"})  # neutral: it neither sinks nor rises
     assert heavy.grains.density == 1000.0
+
+
+@pytest.mark.parametrize(
+    "name, changes, words",
+    [
+        (
+            "column_collapse",
+            {"grains.density": "26500 kg/m3"},
+            "grains.density = 2.65e+04 kg/m3: pumice has about 500",
+        ),
+        ("box", MIXED, "materials.lead.density = 1.13e+05 kg/m3"),
+        ("bedload_3d", {"water.density": "1 kg/m3"}, "water.density = 1 kg/m3: fresh water has 1000"),
+        ("movable_bed", {"water.viscosity": "1e-3 m2/s"}, "its dynamic viscosity 1e-3 Pa s"),
+        ("sheet_flow", {"water.depth": "6 m"}, "water.depth = 6 m: 1.5e+03 diameters"),
+        ("river", {"water.depth": "1 mm"}, "water.depth = 0.001 m: 0.1 diameters"),
+        (
+            "river",
+            {"water.row.dams.0.height": "4.5 m"},
+            "m: height over the bottom, in a row of 3 m",
+        ),
+    ],
+)
+def test_values_far_from_those_of_sediment_are_warned_of(name, changes, words) -> None:
+    def said(case: Case) -> str:
+        return "\n".join(
+            f"{row.name} = {row.shown}: {row.origin}" for row in explain(case) if row.section == "unusual"
+        )
+
+    assert words in said(read(case_path(f"{name}.toml"), changes))
+    assert said(read(case_path(f"{name}.toml"))) == ""
 
 
 def river(folder: Path, long: float, high: float, x: str, z: str = "0", unit: str = "m") -> Case:

@@ -174,7 +174,7 @@ def test_a_dam_thinner_than_a_segment_is_refused(river):
 
 
 def test_a_dam_beyond_the_row_is_refused(river):
-    with pytest.raises(CaseError, match=r"dams.0.end = 60.*must lie in the row, 0 to"):
+    with pytest.raises(CaseError, match=r"dams.0.end = '60 m'.*must lie in the row, 0 to"):
         read_text(RIVER.replace('end = "3.2 m"', 'end = "60 m"'))
 
 

@@ -157,7 +157,7 @@ def test_an_open_end_is_closed_by_a_cut_within_the_curve() -> None:
     found = derive(inline(open_ended, grains__finest="'1 mm'", grains__coarsest="'6 mm'"))
     assert (found.d_min, found.d_max) == (0.001, 0.006)
     said = fault(open_ended, grains__finest="'0.5 mm'", grains__coarsest="'9 mm'")
-    assert "grains.finest = 0.0005" in said
+    assert "grains.finest = '0.5 mm'" in said
     assert "begins at 4 % finer" in said
     assert "ends at 97 % finer" in said
 
@@ -195,7 +195,7 @@ def test_without_a_curve_the_diameter_is_missed_and_the_cuts_have_no_effect() ->
     text = TEXT.replace('sieve_curve = "gravel.csv"\n', "")
     with pytest.raises(CaseError, match=r"grains\.diameter: missing; mean diameter"):
         read_text(text)
-    with pytest.raises(CaseError, match=r"grains\.finest = 0.001: has no effect without"):
+    with pytest.raises(CaseError, match=r"grains\.finest = '1 mm': has no effect without"):
         read_text(text, {"grains.diameter": "2 mm", "grains.finest": "1 mm"})
 
 
@@ -213,6 +213,11 @@ def test_check_says_what_is_cut_and_what_the_finest_grains_cost() -> None:
     kept = CURVE.share_below(0.006) - 0.2
     grains = CURVE.cut(0.002, 0.006).mean_cube / CURVE.cut(0.0, 0.006).mean_cube * (kept + 0.2) / kept
     assert f"{2.0**1.5:.3g} times as many steps and {grains:.3g} times as many grains" in cut.origin
+    finer = rows["D10"]
+    assert (
+        finer.flag == "warning" and f"of the whole curve {100 * CURVE.diameter(0.1):.3g} cm" in finer.origin
+    )
+    assert all(row.flag == "" for row in explain(inline()) if row.name in {"D10", "D50", "D90"})
     coarse = rows["mass coarser than coarsest, left out"]
     assert coarse.flag == "warning"
     assert coarse.value == pytest.approx(1.0 - CURVE.share_below(0.006))

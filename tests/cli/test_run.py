@@ -168,6 +168,15 @@ def test_an_existing_run_is_refused_unless_overwritten(ryusa_: Any, drop: str) -
     assert ryusa_("run", drop, *short, "--overwrite").code == 0
 
 
+@pytest.mark.parametrize("threads", ["0", "-1"])
+def test_a_run_needs_a_thread(ryusa_: Any, drop: str, threads: str) -> None:
+    ryusa_("run", drop, "--set", "stop.time=2 ms", "-o", "made", "--quiet")
+    for command in (("run", drop), ("resume", "made"), ("warm", drop)):
+        done = ryusa_(*command, "--threads", threads)
+        assert done.code == 2
+        assert f"threads = {threads}: must be at least 1" in done.err
+
+
 def test_quiet_hides_no_warning_of_the_physics(ryusa_: Any, drop: str) -> None:
     soft = ("--set", "contact.stiffness=0.5 N/cm", "--set", "stop.time=0.2 s")
     said = ryusa_("run", drop, *soft, "-o", "loud")
@@ -321,7 +330,7 @@ def test_a_stopped_run_is_resumed_by_either_command_and_inspect_shows_its_state(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["resume", "nowhere"], "nowhere: not a run folder of ryusa"),
+        (["resume", "nowhere"], "nowhere: no such run folder"),
         (["inspect", "nowhere"], "nowhere: no such run folder"),
         (["run", "drop.toml", "--checkpoint", "soon"], "soon"),
         (["run", "drop.toml", "--checkpoint", "0 s"], "must be longer than 0 s"),

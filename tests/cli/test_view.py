@@ -37,8 +37,8 @@ def test_the_page_goes_where_it_is_asked_for(folder, tmp_path):
     [
         (["-o", "page.pdf"], "must end in .html"),
         (["--begin", "20"], "--begin = '20': missing unit"),
-        (["--size", "10"], "--size = '10': missing unit"),
-        (["--size", "1 kB"], "--size"),
+        (["--size", "10"], "--size = '10': missing unit: needs a quantity in byte, such as '5 MB'"),
+        (["--size", "1 kB"], "--size = '1 kB': must be 400 kB to 2e+06 kB"),
         (["--begin", "20 s"], "the run holds 0 .. 0.1 s"),
     ],
 )

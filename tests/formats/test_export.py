@@ -84,6 +84,15 @@ def test_ase_reads_every_frame_of_an_extended_xyz(
         assert atoms.arrays["fixed"].tolist() == [0, 0, 0, 1]
 
 
+def test_pandas_reads_the_csv_as_the_page_says(exported: Exported, flight: Results) -> None:
+    pandas = pytest.importorskip("pandas")
+    page = (Path(__file__).parents[2] / "docs/in-and-out.md").read_text(encoding="utf-8")
+    assert 'read_csv(FILE, comment="#")' in page
+    found = pandas.read_csv(exported("csv"), comment="#")
+    assert list(found.columns)[:3] == ["t [s]", "step", "id"]
+    assert len(found) == len(flight.frames) * (flight.scene.n_grain + flight.scene.n_fixed)
+
+
 def test_pyarrow_reads_the_columns_of_the_csv_with_their_units(exported: Exported, flight: Results) -> None:
     pytest.importorskip("pyarrow")
     import pyarrow.csv

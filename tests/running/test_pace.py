@@ -2,7 +2,7 @@
 
 import math
 
-from ryusa.casefile.wall_time import WallTime
+from ryusa.casefile.wall_time import SECONDS_PER_RUN, WallTime
 from ryusa.engine import registry
 from ryusa.running.pace import other_engines
 
@@ -20,3 +20,8 @@ def test_a_run_of_days_names_the_other_engines_and_whether_they_are_there(monkey
     assert other_engines("cpu", 4_000_000, taking(165_000.0), 2) == ()
     assert other_engines("lammps", 10**9, taking(1e9), 1) == ()
     assert other_engines(None, 10**9, taking(math.inf), 1) == ()
+
+
+def test_a_wall_time_is_told_in_a_unit_of_its_size() -> None:
+    said = {90.0: "90 s", 1590.0: "26.5 min", 9000.0: "2.5 h"}
+    assert {seconds: str(WallTime(seconds - SECONDS_PER_RUN, 0.5, 2.0, 0, "")) for seconds in said} == said

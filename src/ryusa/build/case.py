@@ -79,6 +79,7 @@ from ryusa.laws.families import (
 )
 from ryusa.model import ContactLaw, Materials, RollingLaw, Scene, State, Water
 from ryusa.model.scene import Damping, EventRule
+from ryusa.spelling import nearest_word
 
 BUILDERS = {
     "drop": drop,
@@ -127,7 +128,17 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     CaseError : first grains overlap or lie between lanes, the timeline names an unknown group, or a wall, a
         feed or an exit cannot do what it is asked.
     """
-    found = derived or derive(case)
+    try:
+        return _built(case, derived or derive(case))
+    except CaseError as error:
+        if error.source is not None or case.path is None:
+            raise
+        raise CaseError(
+            error.key, error.value, error.allowed, error.nearest, others=error.others, source=case.path.name
+        ) from error
+
+
+def _built(case: Case, found: Derived) -> Built:
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
     key = key_of(case)
@@ -315,7 +326,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
         bed = column_keys(case).bed if water.profile == "column" else ""
         if water.roughness is None and (water.profile == "log rough" or bed == "rough"):
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
-        if water.depth is None:
+        if water.depth is None and row_keys(case) is None:
             notes.append("water of unlimited depth (water.depth not given)")
         notes += [
             f"{what}: {getattr(water, key)}{unit} (water.{key} not given)"
@@ -391,4 +402,6 @@ def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
         if entry.remove is not None and entry.remove not in known:
             there = ", ".join(known) or "there is none"
             allowed = f"must be a group of fixed grains, a plane or a wall: {there}"
-            raise CaseError(f"timeline.{number}.remove", entry.remove, allowed)
+            raise CaseError(
+                f"timeline.{number}.remove", entry.remove, allowed, nearest_word(entry.remove, known)
+            )

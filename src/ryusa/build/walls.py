@@ -319,7 +319,9 @@ def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall],
         if worst > TOLERANCE:
             who = name_of(placement, grain)
             text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d"
-            raise CaseError(key, None, f"{text}; move the wall or the grains")
+            across = float((high.max(axis=0) - low.min(axis=0)).max())
+            hint = f", or check its unit: it is {across:.3g} m long" if len(wall.face) > 1 else ""
+            raise CaseError(key, None, f"{text}; move the wall or the grains{hint}")
 
 
 def _from_plane(wall: SolidWall, face: Ints, x: Floats) -> Floats:

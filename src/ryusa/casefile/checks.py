@@ -9,6 +9,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.choices import check_choices
 from ryusa.casefile.column.checks import check_column
 from ryusa.casefile.contact.checks import check_contact, check_expected_speed, check_rolling
+from ryusa.casefile.contact.impact import check_overlap
 from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.domain import check_domain, check_planes
@@ -94,7 +95,9 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
             *check_film_step(case, derived),
             *check_drag_step(case, derived),
         ]
-    frames = [] if step else check_frames(case, derived, data)
+    frames = [] if step else [*check_frames(case, derived, data)]
+    if not step and not frames and not water_alone(case):
+        frames += check_overlap(case, derived, data)
     return [
         *check_domain(case, derived),
         *check_meshes(case, derived),

@@ -18,6 +18,7 @@ from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import shape_rows
 from ryusa.casefile.time import time_rows
+from ryusa.casefile.unusual import unusual_rows
 from ryusa.casefile.walls import wall_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 
@@ -32,8 +33,9 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
     """
     found = derived or derive(case)
     if water_alone(case):
-        return [*row_rows(case, found), *law_rows(case), *cost_rows(case, found)]
+        return [*unusual_rows(case), *row_rows(case, found), *law_rows(case), *cost_rows(case, found)]
     return [
+        *unusual_rows(case),
         *grain_rows(case, found),
         *shape_rows(case, found),
         *traffic_rows(case),

@@ -1,20 +1,19 @@
 """From the complaints of pydantic to errors that name key, value, what is allowed and the nearest key."""
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
 from pydantic import ValidationError
 
 from ryusa.casefile.keys import builders, builders_with, description_at, dotted, item, keys_at, nearest_key
+from ryusa.casefile.motion import too_steep
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
+from ryusa.units import limit_as_typed, si_unit
 
 _LONGEST_VALUE = 80
 _MESSAGES = {
-    "greater_than": "must be greater than {gt}",
-    "greater_than_equal": "must be at least {ge}",
-    "less_than": "must be less than {lt}",
-    "less_than_equal": "must be at most {le}",
     "float_type": "must be a number, without quotes",
     "int_type": "must be a whole number",
     "bool_type": "must be true or false",
@@ -28,6 +27,12 @@ _MESSAGES = {
     "too_long": "has too many entries",
     "string_too_short": "must not be empty",
     "string_too_long": "is too long",
+}
+_LIMITS = {
+    "greater_than": ("greater than", "gt"),
+    "greater_than_equal": ("at least", "ge"),
+    "less_than": ("less than", "lt"),
+    "less_than_equal": ("at most", "le"),
 }
 _ELASTIC = (
     "unknown key; elastic spheres take contact.law = 'Hertz-Mindlin' with youngs_modulus and poisson_ratio, "
@@ -67,6 +72,12 @@ def _fault(one: dict[str, Any], data: dict[str, Any]) -> CaseError:
     value = _value(data, path)
     if kind == "extra_forbidden":
         return _unknown_key((*_plain(one["loc"][:-1]), one["loc"][-1]), data)  # a key may look like a branch
+    if kind == "missing" and isinstance(path[-1], int) and isinstance(short := _value(data, path[:-1]), list):
+        such = f" such as {short[0]!r}" if short else ""
+        allowed = f"needs {path[-1] + 1} entries{such}, and has {len(short)}: the last is missing"
+        return CaseError(dotted(path[:-1]), short, allowed)
+    if kind == "tuple_type" and isinstance(_item(data, path), dict):
+        return CaseError(dotted(path), None, f"must be in double brackets, [[{dotted(path)}]], once for each")
     if kind == "missing":
         return CaseError(dotted(path), None, _missing(path, data))
     if kind in {"union_tag_invalid", "union_tag_not_found"}:
@@ -81,10 +92,40 @@ def _fault(one: dict[str, Any], data: dict[str, Any]) -> CaseError:
         return CaseError(dotted(path), value, allowed, nearest_word(value, names))
     if kind == "value_error":
         return CaseError(dotted(path), value, str(context.get("error", one["msg"])))
+    if kind in _LIMITS and path[-1] == "slope" and isinstance(value, int | float):
+        return too_steep(dotted(path), value)
+    if kind in _LIMITS:
+        words, side = _LIMITS[kind]
+        limit = limit_as_typed(value, context[side], least=side in {"gt", "ge"})
+        return CaseError(dotted(path), value, f"must be {words} {limit}")
     allowed = _MESSAGES.get(kind, str(one["msg"])).format(**context)
-    if kind.startswith(("greater", "less")) and isinstance(value, str):
-        allowed += _unit_of_bound(path, data)
     return CaseError(dotted(path), value, allowed)
+
+
+def as_typed(fault: CaseError, data: dict[str, Any]) -> CaseError:
+    """The fault of a check, with value and lengths, speeds and so on in the words of the file.
+
+    Checks know SI numbers. The value becomes what the file holds, and quantities of its kind in the message
+    take its unit: of "2 mm", "at least 0.004 m" becomes "at least 4 mm".
+    """
+    path = [int(part) if part.isdecimal() else part for part in fault.key.split(".")]
+    typed = _value(data, path)
+    if fault.value is None or isinstance(fault.value, str) or not isinstance(typed, str | list):
+        return fault
+    first = typed if isinstance(typed, str) else str(next(iter(typed), ""))
+    allowed, unit = fault.allowed, si_unit(first)
+
+    def in_its_unit(found: re.Match[str]) -> str:
+        least = re.search("at least|above|greater", allowed[: found.start()]) is not None
+        numbers = [limit_as_typed(first, float(one), least=least) for one in found.groups() if one]
+        return " to ".join([*(one.split(" ", 1)[0] for one in numbers[:-1]), numbers[-1]])
+
+    if unit:
+        number = r"([-+]?[0-9]+\.?[0-9]*(?:e[-+]?[0-9]+)?)"
+        allowed = re.sub(
+            rf"(?<![\w.]){number}(?: to {number})? {re.escape(unit)}(?![\w/])", in_its_unit, allowed
+        )
+    return CaseError(fault.key, typed, allowed, fault.nearest)
 
 
 def _unknown_key(path: tuple[str | int, ...], data: dict[str, Any]) -> CaseError:
@@ -110,9 +151,14 @@ def _plain(loc: Sequence[str | int]) -> tuple[str | int, ...]:
     return tuple(parts)
 
 
-def _value(data: Any, path: Sequence[str | int]) -> Any:
+def _item(data: Any, path: Sequence[str | int]) -> Any:
     for part in path:
         data = item(data, part)
+    return data
+
+
+def _value(data: Any, path: Sequence[str | int]) -> Any:
+    data = _item(data, path)
     try:
         return None if isinstance(data, dict) or len(repr(data)) > _LONGEST_VALUE else data
     except ValueError:  # a whole number of thousands of digits
@@ -122,7 +168,3 @@ def _value(data: Any, path: Sequence[str | int]) -> Any:
 def _missing(path: Sequence[str | int], data: dict[str, Any]) -> str:
     about = description_at(path, data)
     return f"missing; {about[0].lower()}{about[1:].rstrip('.')}" if about else "missing"
-
-
-def _unit_of_bound(path: Sequence[str | int], data: dict[str, Any]) -> str:
-    return " (in SI)" if keys_at(path[:-1], data) else ""

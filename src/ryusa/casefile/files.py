@@ -1,17 +1,20 @@
 """Files that a case names: inside the folder of the case file, and nowhere else."""
 
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
 from ryusa.errors import CaseError, ParseError
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 T = TypeVar("T")
+MOST_NAMES = 1000  # files among which a misspelt one is sought
 
 
 def toml_text(path: Path) -> str:
@@ -75,7 +78,9 @@ def contents(case: "Case", key: str, name: str, path: Path, read: Callable[[Path
     CaseError : there is no such file, or it cannot be read.
     """
     if not path.is_file():
-        raise CaseError(key, name, f"no such file in the folder of the case, {folder_of(case)}")
+        there = sorted(one.name for one in islice(path.parent.glob(f"*{path.suffix}"), MOST_NAMES))
+        allowed = f"no such file in the folder of the case, {folder_of(case)}"
+        raise CaseError(key, name, allowed, nearest_word(path.name, there))
     try:
         stamp = path.stat()
         return read(path, name, stamp.st_mtime_ns, stamp.st_size)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 KEY = "grains.sieve_curve"
 BUILDERS = ("packing", "flume", "box", "fill", "empty", "stream")  # those that draw sizes
+MOVED = 0.01  # of a diameter by which cuts may change it without a word
 COARSE = 0.05  # share of the mass in one grain above which a curve is laid poorly
 DURATION = 1.5  # power of the diameter that the shortest contact follows at one stiffness
 
@@ -182,14 +183,22 @@ def grading_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     source = given if isinstance(given, str) else "given in the case"
     rows = [
         word("grains", "sieve curve", f"{len(points)} sieves", f"{source}; by mass, straight over log d"),
-        *(
-            number("grains", f"D{round(100 * share)}", grading.diameter(share), "cm", "of the grains laid")
-            for share in SHARES
-        ),
+        *(_size(share, whole, grading) for share in SHARES),
         number("grains", "sorting", grading.sorting, "-", "geometric standard deviation sqrt(D84/D16)"),
         number("grains", "mean by number", grading.mean_diameter, "cm", "fine grains are most in number"),
     ]
     return [*rows, *_cut_rows(case, whole, grading), *_laid_rows(derived, grading), _cost(derived, grading)]
+
+
+def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
+    """A characteristic diameter of what is laid, with that of the curve where the cuts change it."""
+    laid, origin, flag = grading.diameter(share), "of the grains laid", ""
+    if whole.finer[0] <= share <= whole.finer[-1]:
+        asked = whole.diameter(share)
+        if not math.isclose(laid, asked, rel_tol=MOVED):
+            origin += f"; of the whole curve {100.0 * asked:.3g} cm: finest and coarsest change it"
+            flag = "warning"
+    return number("grains", f"D{round(100 * share)}", laid, "cm", origin, flag)
 
 
 def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[ExplainRow]:

@@ -8,7 +8,7 @@ from pydantic_core import InitErrorDetails
 
 from ryusa.casefile.files import RelativePath
 from ryusa.casefile.grading import grading_of, grading_rows, reference_diameter
-from ryusa.casefile.quantities import Density, Length, Number, Ratio
+from ryusa.casefile.quantities import Boolean, Density, Length, Number, Ratio
 from ryusa.casefile.rows import ExplainRow, count, number
 from ryusa.casefile.section import Section, given
 from ryusa.laws import drag, motion
@@ -61,7 +61,7 @@ class GrainsSection(Section):
     diameter of u_star, roughness, overlap/d and fixed grains, in a sieve_curve D50 when not given."""
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
-    buoyant: bool = False
+    buoyant: Boolean = False
     """true: grains may be lighter than the water, and rise, as pumice does."""
     spread: Spread = 0.0
     """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""

@@ -50,6 +50,7 @@ def description_at(path: Sequence[str | int], data: dict[str, Any]) -> str:
 _OTHER_NAMES = {
     **dict.fromkeys(("dt", "timestep", "time_step"), "time.step"),
     **dict.fromkeys(("radius", "mean_radius", "size"), "grains.diameter"),
+    **dict.fromkeys(("d10", "d16", "d50", "d84", "d90"), "grains.sieve_curve"),
 }
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.quantities import Acceleration, PositiveLength, Slope, SlopeAngle
+from ryusa.casefile.quantities import Acceleration, Boolean, PositiveLength, Slope, SlopeAngle
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
 
@@ -23,7 +23,7 @@ class MotionSection(Section):
 
     rotation: Literal["locked", "free"]
     """Whether grains rotate: "free", or "locked" (translation only)."""
-    plane: bool = True
+    plane: Boolean = True
     """true: grains move in the x-z plane only; false: in three dimensions."""
     slope: Slope | None = None
     """Bed slope as a tangent, positive where the bed falls towards +x; 0 when no slope is given."""
@@ -61,17 +61,22 @@ def slab_width(case: "Case") -> float:
     return case.motion.slab_width or reference_diameter(case)
 
 
+def too_steep(key: str, value: float) -> CaseError:
+    """Fault of a slope that is rather degrees or per cent."""
+    turned = math.degrees(math.atan(value))
+    return CaseError(
+        key, value, f"is the tangent of {turned:.3g} deg; steeper than 45 deg is asked for as "
+        f"{key}_angle = '{turned:.3g} deg'. Were {value:g} deg meant, or '{value:g} %'?",
+    )  # fmt: skip
+
+
 def check_motion(case: "Case") -> Iterator[CaseError]:
     """Find keys of [motion] that have no effect, and slopes that are rather degrees or per cent."""
     slopes = {"motion.slope": case.motion.slope}
     slopes |= {f"timeline.{k}.slope": change.slope for k, change in enumerate(case.timeline)}
     for key, value in slopes.items():
         if value is not None and abs(value) > STEEPEST:
-            turned = math.degrees(math.atan(value))
-            yield CaseError(
-                key, value, f"is the tangent of {turned:.3g} deg; steeper than 45 deg is asked for as "
-                f"{key}_angle = '{turned:.3g} deg'. Were {value:g} deg meant, or '{value:g} %'?",
-            )  # fmt: skip
+            yield too_steep(key, value)
     if case.motion.slab_width is not None and not case.motion.plane:
         yield CaseError(
             "motion.slab_width", case.motion.slab_width, "has no effect unless motion.plane = true"

@@ -55,7 +55,7 @@ def _set(data: dict[str, Any], key: str, value: Any) -> None:
         elif isinstance(here, list) and part.isdecimal() and int(part) < len(here):
             here = here[int(part)]
         else:
-            raise CaseError(f"--set {key}", None, f"'{part}' is not a table in this case")
+            raise CaseError(f"--set {key}", None, _no_table(part, here))
     last = parts[-1]
     if isinstance(here, list) and last.isdecimal() and int(last) < len(here):
         here[int(last)] = value
@@ -66,4 +66,13 @@ def _set(data: dict[str, Any], key: str, value: Any) -> None:
                     here.pop(rival, None)
         here[last] = value
     else:
-        raise CaseError(f"--set {key}", None, f"'{parts[-2]}' is not a table in this case")
+        raise CaseError(f"--set {key}", None, _no_table(last if isinstance(here, list) else parts[-2], here))
+
+
+def _no_table(part: str, here: Any) -> str:
+    if not isinstance(here, list):
+        return f"'{part}' is not a table in this case"
+    entries: list[Any] = here
+    names = [str(one["name"]) for one in entries if isinstance(one, dict) and "name" in one]
+    named = f" ({', '.join(names)})" if names else ""
+    return f"'{part}' is no entry: they count from 0 to {len(entries) - 1}{named}"

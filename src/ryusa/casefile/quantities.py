@@ -79,6 +79,7 @@ def printable(name: str) -> str:
 Name = Annotated[str, Field(min_length=1, max_length=64), AfterValidator(printable)]
 Number = Annotated[float, Strict(), AllowInfNan(False)]
 Count = Annotated[int, Strict()]
+Boolean = Annotated[bool, Strict()]
 Length = Annotated[float, _si("m"), _text("length", "0.2 cm", "2 mm")]
 Duration = Annotated[float, _si("s"), _text("time", "1 s", "1 ms"), Field(gt=0)]
 Moment = Annotated[float, _si("s"), _text("time", "0 s", "0.1 s"), Field(ge=0)]

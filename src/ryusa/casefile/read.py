@@ -9,9 +9,10 @@ from pydantic import ValidationError
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.checks import check
-from ryusa.casefile.faults import faults
+from ryusa.casefile.faults import as_typed, faults
 from ryusa.casefile.files import toml_text
 from ryusa.casefile.overrides import parsed, with_overrides
+from ryusa.casefile.toml_faults import encoding_fault, toml_fault
 from ryusa.cases import FOLDERS, case_files
 from ryusa.errors import CaseError
 
@@ -43,7 +44,7 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
     except FileNotFoundError:
         raise CaseError(str(path), None, _not_found(path)) from None
     except UnicodeDecodeError as error:
-        raise CaseError(str(path), None, f"is not UTF-8 text (byte {error.start})") from None
+        raise CaseError(str(path), None, encoding_fault(error)) from None
     except (OSError, ValueError) as error:
         raise CaseError(str(path), None, f"cannot be read: {error}") from None
     return read_text(text, overrides, path=path)
@@ -66,7 +67,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     except (
         ValueError
     ) as error:  # TOMLDecodeError names line and column; numbers of thousands of digits end here too
-        raise CaseError(source or "case", None, f"not valid TOML: {error}") from None
+        raise CaseError(source or "case", None, f"not valid TOML: {toml_fault(text, error)}") from None
     except RecursionError:
         raise CaseError(source or "case", None, "not valid TOML: nested too deeply") from None
     data = with_overrides(data, overrides or {})
@@ -77,7 +78,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     case._text, case._path, case._overrides = text, path, dict(overrides or {})
     found = check(case, data)
     if found:
-        raise CaseError.together(found, source)
+        raise CaseError.together([as_typed(one, data) for one in found], source)
     return case
 
 

@@ -9,6 +9,7 @@ from ryusa.casefile.builders.schema import FromFile, SaltationSection
 from ryusa.casefile.builders.values import counts
 from ryusa.casefile.precision import PrecisionSection
 from ryusa.casefile.quantities import (
+    Boolean,
     Count,
     Duration,
     FrictionAngle,
@@ -95,7 +96,7 @@ class RecordSection(Section):
     grains or where saltations end the run, else none."""
     tracked: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Numbers of the tracked grains, from 0."""
-    forces: bool = False
+    forces: Boolean = False
     """Whether every frame holds the contact forces, which `ryusa measure RUN contact_stress` needs."""
     settle: Moment = 0.0
     """Simulated time before which measures ignore the run."""
@@ -160,17 +161,22 @@ def check_record(case: "Case", derived: "Derived") -> Iterator[CaseError]:
 
 
 def check_frames(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
-    """Find frames closer together than steps."""
-    interval = case.record.frames
+    """Find frames closer together than steps, or farther apart than begin and end of the run."""
+    interval, end = case.record.frames, case.stop.time
+    written = data.get("record", {}).get("frames", f"{interval:g} s")
+    if end is not None and interval > end:
+        allowed = (
+            f"must be at most stop.time, {data['stop']['time']}: the run would keep its first frame alone"
+        )
+        yield CaseError("record.frames", written, allowed)
     if interval < derived.dt:
-        written = data.get("record", {}).get("frames", f"{interval:g} s")
         stiffness = "youngs_modulus" if case.contact.youngs_modulus is not None else "stiffness"
         given = data.get("contact", {}).get(stiffness)
         if case.time.step is None and derived.shortest > max(interval, LONG):
             yield CaseError(
                 f"contact.{stiffness}", given, f"is so small that the shortest contact lasts "
-                f"{derived.shortest:.4g} s, longer than record.frames, {interval:g} s: take stiffer contacts "
-                "(`ryusa check` shows overlaps), or frames farther apart",
+                f"{derived.shortest:.4g} s and a step {derived.dt:.4g} s, longer than record.frames, "
+                f"{interval:g} s: take stiffer contacts (`ryusa check` shows overlaps) or fewer frames",
             )  # fmt: skip
             return
         yield CaseError("record.frames", written, f"must be at least one step, {derived.dt:.4g} s")

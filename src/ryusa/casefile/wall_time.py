@@ -82,7 +82,10 @@ class WallTime:
         return f"{self.basis} ({self.kind}){taken}"
 
     def __str__(self) -> str:
-        return f"{self.seconds / HOUR:.3g} h" if self.seconds > HOUR else f"{self.seconds:.3g} s"
+        unit, of = (
+            (HOUR, "h") if self.seconds > HOUR else (60.0, "min") if self.seconds >= 120.0 else (1.0, "s")
+        )
+        return f"{self.seconds / unit:.3g} {of}"
 
 
 def time_expected(case: Case) -> tuple[float, str]:
@@ -158,7 +161,8 @@ def wall_time(case: Case, derived: Derived, *, threads: int = 1, engine: str = "
     by_rule, kind = wall_time_by_rule(case, derived), kind_of_run(case, threads, engine)
     ratios = run_times.ratios_of(kind)
     if not ratios:
-        return WallTime(by_rule.stepping / threads, by_rule.low, by_rule.high, 0, kind)
+        # the engine refuses fewer threads than one
+        return WallTime(by_rule.stepping / max(threads, 1), by_rule.low, by_rule.high, 0, kind)
     usual = median(ratios)
     return WallTime(usual * by_rule.stepping, min(ratios) / usual, max(ratios) / usual, len(ratios), kind)
 

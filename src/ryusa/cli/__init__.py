@@ -36,6 +36,12 @@ class Commands(TyperGroup):
         except RyusaError as error:
             typer.echo(f"ryusa: {error}", err=True)
             raise typer.Exit(error.exit_code) from None
+        except Exception as error:  # of click, whose class is private to typer
+            said = getattr(error, "message", "")
+            if "unexpected extra argument" in said:
+                hint = "A value with a blank stands in quotes, such as --set 'water.depth=2 cm'"
+                vars(error)["message"] = f"{said}. {hint}"
+            raise
         except KeyboardInterrupt as error:
             typer.echo(f"ryusa: interrupted{f': {error}' if str(error) else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
@@ -75,8 +81,12 @@ def _options(
     """Simulate grains of sand, gravel or debris in flowing water by the distinct element method."""
 
 
-for _family in _FAMILIES:
-    import_module(_family).register(app)
+try:
+    for _family in _FAMILIES:
+        import_module(_family).register(app)
+except KeyboardInterrupt:  # while modules are loaded
+    typer.echo("ryusa: interrupted", err=True)
+    raise SystemExit(INTERRUPTED) from None
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -100,7 +100,9 @@ def _positive(key: str, text: str, unit: str, least: float | None = None) -> flo
     except UnitError as error:
         raise CaseError(key, text, str(error)) from None
     if not (value > 0.0 if least is None else value >= least):
-        raise CaseError(key, text, "must be above 0" if least is None else f"must be at least {least:g}")
+        raise CaseError(
+            key, text, "must be above 0" if least is None else f"must be at least {least:g} {unit}"
+        )
     return value
 
 

@@ -8,7 +8,7 @@ import typer
 
 from ryusa.catalogue import BEDS, MEASURES, PICTURES, QUANTITIES, SIDES, PictureEntry, called, load
 from ryusa.cli import measure_options
-from ryusa.cli.measure_options import entry_of, keywords, listed, of_row, refuse_swapped, taking
+from ryusa.cli.measure_options import entry_of, keywords, listed, naming, of_row, refuse_swapped, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def _length(name: str, value: str, results: "Results") -> float:
     found = in_unit(value, "m", name)
-    within(name, found, float(results.scene.d[0]), 1.0e6)
+    within(name, found, float(results.scene.d[0]), 1.0e6, value)
     return found
 
 
@@ -166,7 +166,8 @@ def draw(
     paths = [_place(run, entry.name, output, alone=len(entries) == 1) for entry in entries]
     given = [keywords(context, entry, results, CHECKS) for entry in entries]
     for entry, path, options in zip(entries, paths, given, strict=True):
-        figure, rows = _drawn(entry, results, options)
+        with naming(results, entry.name):
+            figure, rows = _drawn(entry, results, options)
         _write(figure, rows, path, csv)
 
 

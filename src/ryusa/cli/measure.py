@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import measure_options
-from ryusa.cli.measure_options import entry_of, keywords, listed, of_row, refuse_swapped, taking
+from ryusa.cli.measure_options import entry_of, keywords, listed, naming, of_row, refuse_swapped, taking
 from ryusa.cli.options import open_run, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -135,9 +136,21 @@ Dam = Annotated[str | None, of_row("dam", MEASURES)]
 Reach = Annotated[str | None, of_row("reach", MEASURES)]
 
 
+class _Measure(TyperCommand):
+    """Names the argument that is missing: a single one is taken for the last, WHAT."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Refuse a run without WHAT."""
+        typed = self.make_parser(ctx).parse_args(list(args))[0]
+        names = [one.name for one in MEASURES]
+        if not typed.get("runs") and typed.get("what") not in (None, *names):
+            raise CaseError("WHAT", None, f"missing after {typed['what']}; must be one of {', '.join(names)}")
+        return super().parse_args(ctx, args)
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("measure", help=listed(measure.__doc__ or "", MEASURES))(measure)
+    app.command("measure", cls=_Measure, help=listed(measure.__doc__ or "", MEASURES))(measure)
 
 
 def measure(
@@ -180,7 +193,8 @@ def measure(
     for results in opened:
         given = keywords(context, entry, results, CHECKS)
         printed = {name: given.pop(name) for name in entry.printing if name in given}
-        records.append(called(entry)(results, **given))
+        with naming(results, entry.name):
+            records.append(called(entry)(results, **given))
     found: Any = records[0] if len(records) == 1 else _pooled(entry.name, opened, records)
     files = {"--series": (series, _series), "--layers": (layers, _layers)}
     for option, (path, rows_of) in files.items():

@@ -1,6 +1,8 @@
 """Options of `ryusa measure` and `ryusa draw`: those that were typed, checked, as keywords of a function."""
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from inspect import cleandoc
 from pathlib import Path
 from textwrap import fill
@@ -10,7 +12,7 @@ import typer
 
 from ryusa.catalogue import BEDS, OPTION_NAMES, MeasureEntry, PictureEntry, option
 from ryusa.cli.options import in_unit, need_settled, within
-from ryusa.errors import CaseError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.spelling import known_word, nearest_word
 
 if TYPE_CHECKING:
@@ -99,6 +101,7 @@ def keywords(
         if name not in entry.given_as:
             raise CaseError(name, value, _taken(entry), nearest_word(name, entry.given_as))
     given = {name: checks[name](name, value, results) for name, value in typed.items()}
+    _refuse_window(typed, given, results)
     settle = given.get("--settle")
     if settle is not None and "settle" not in entry.options:
         del given["--settle"]
@@ -108,6 +111,27 @@ def keywords(
         need_settled(results, f"{remedy} 0s shows what is there" if remedy else "all of it lies after that")
     short = {name: keyword for keyword, name in OPTION_NAMES.items()}
     return {short.get(name, name.removeprefix("--")): value for name, value in given.items()}
+
+
+def _refuse_window(typed: Mapping[str, Any], given: Mapping[str, Any], results: "Results") -> None:
+    """Refuse a window after the last frame, or one that ends before it begins."""
+    t = results.frames.t
+    if "--begin" in given and len(t) and given["--begin"] > t[-1]:
+        held = f"lies after the last frame; the run holds {t[0]:.3g} .. {t[-1]:.3g} s"
+        raise CaseError("--begin", typed["--begin"], held)
+    if "--end" in given and given.get("--begin", -math.inf) > given["--end"]:
+        raise CaseError("--begin", typed["--begin"], f"must lie before --end, {typed['--end']}")
+
+
+@contextmanager
+def naming(results: "Results", name: str) -> Generator[None]:
+    """Within the block an error of a run that cannot be measured or drawn names both."""
+    try:
+        yield
+    except ResultsError as error:
+        if str(results.folder) in str(error):
+            raise
+        raise ResultsError(f"{results.folder}: {name}: {error}") from None
 
 
 def _was_typed(context: typer.Context, name: str) -> bool:
@@ -145,7 +169,7 @@ def time(name: str, value: Any, _results: "Results") -> float:
 def window(name: str, value: Any, _results: "Results") -> float:
     """Length of a window or of an average with its unit [s]."""
     found = in_unit(value, "s", name)
-    within(name, found, 1.0e-9, 1.0e9)
+    within(name, found, 1.0e-9, 1.0e9, value)
     return found
 
 
@@ -156,7 +180,9 @@ def length(name: str, value: Any, _results: "Results") -> float:
 
 def reach(name: str, value: Any, _results: "Results") -> tuple[float, float]:
     """Two places along x with their units, such as "0.5 m to 2 m" [m]."""
-    begin, between, end = str(value).partition(" to ")
-    if not between:
-        raise CaseError(name, str(value), 'must be two places with their units, such as "0.5 m to 2 m"')
-    return in_unit(begin, "m", name), in_unit(end, "m", name)
+    from ryusa.units import UnitError, span
+
+    try:
+        return span(str(value), "m")
+    except UnitError as error:
+        raise CaseError(name, str(value), str(error)) from None

@@ -39,12 +39,15 @@ def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
     return grains
 
 
-def within(key: str, value: float, low: float, high: float) -> None:
-    """Raise an error for an option outside its range."""
+def within(key: str, value: float, low: float, high: float, typed: str = "", unit: str = "") -> None:
+    """Raise an error for an option outside its range, in the words of what was `typed` with a unit."""
     if not low <= value <= high:
         from ryusa.errors import CaseError
+        from ryusa.units import limit_as_typed
 
-        raise CaseError(key, value, f"must be {low:g} to {high:g}")
+        least = limit_as_typed(typed, low, least=True, unit=unit)
+        most = limit_as_typed(typed, high, least=False, unit=unit)
+        raise CaseError(key, typed or value, f"must be {least} to {most}")
 
 
 def in_unit(text: str, unit: str, key: str) -> float:
@@ -77,7 +80,7 @@ def page_size(size: str, runs: int = 1) -> float:
     from ryusa.view.page import LEAST_SIZE
 
     largest = in_unit(size, "byte", "--size")
-    within("--size", largest, 2.0 * LEAST_SIZE * runs, 2.0e9)
+    within("--size", largest, 2.0 * LEAST_SIZE * runs, 2.0e9, size, "byte")
     return largest
 
 

@@ -230,11 +230,11 @@ def resume(
     """
     from ryusa.errors import ResultsError
     from ryusa.results import schema
+    from ryusa.results.place import refuse_other
     from ryusa.results.read import read_json
     from ryusa.running.interrupt import catch_signals
 
-    if not schema.is_run_folder(folder):
-        raise ResultsError(f"{folder}: not a run folder of ryusa")
+    refuse_other(folder)
     origin = read_json(folder / schema.PROVENANCE)
     with catch_signals() as signal, registry.leading(str(origin.get("engine"))) as leads:
         if not leads:

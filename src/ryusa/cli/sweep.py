@@ -164,7 +164,7 @@ def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], agai
     for path in scripts:
         typer.echo(f"wrote {path}")
     typer.echo(f"{n} {'run' if n == 1 else 'runs'} to make. To submit:")
-    for line in submission(scripts):
+    for line in submission(scripts, n):
         typer.echo(f"  {line}")
 
 

@@ -47,7 +47,10 @@ def frames_between(t: Floats, begin: float, end: float) -> slice:
     """
     first, last = int(np.searchsorted(t, begin, "left")), int(np.searchsorted(t, end, "right"))
     if last - first < 2:
-        raise ResultsError(f"{last - first} frames from t = {begin:g} s to {end:g} s; 2 or more are needed")
+        held = f"the run holds {t[0]:g} .. {t[-1]:g} s" if len(t) else "the run holds no frame"
+        raise ResultsError(
+            f"{last - first} frames from t = {begin:g} s to {end:g} s; 2 or more are needed, and {held}"
+        )
     return slice(first, last)
 
 

@@ -5,6 +5,7 @@ import html
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, call
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
 from ryusa.spelling import nearest_word
+from ryusa.units import UnitError, quantity, span
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -92,14 +94,42 @@ def _saved(data: bytes, path: Path) -> Path:
     return path
 
 
+_UNITS = {
+    **{name: "s" for name in ("begin", "end", "t", "settle", "window")},
+    **{name: "m" for name in ("reach", "threshold", "length")},
+}
+
+
+def _in_si(options: dict[str, Any]) -> dict[str, Any]:
+    """Options as functions take them, from those by the names and in the words of the command line."""
+    found: dict[str, Any] = {}
+    for name, value in options.items():
+        keyword = "t" if name == "at" else name
+        read = span if keyword == "reach" else quantity
+        try:
+            text = isinstance(value, str) and keyword in _UNITS
+            found[keyword] = read(value, _UNITS[keyword]) if text else value
+        except UnitError as error:
+            raise CaseError(name, value, str(error)) from None
+    return found
+
+
 def measured(results: "Results", name: str, options: dict[str, Any]) -> Any:
     """Give what a measure finds in a run."""
-    return called(_entry(name, MEASURES, "measure"))(results, **options)
+    entry = _entry(name, MEASURES, "measure")
+    function, given = called(entry), _in_si(options)
+    taken = list(signature(function).parameters)[1:]
+    for one in given:
+        if one not in taken:
+            raise CaseError(
+                one, None, f"{name} does not take it; it takes {', '.join(taken)}", nearest_word(one, taken)
+            )
+    return function(results, **given)
 
 
 def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
     """Give a picture of a run; the options are its own, or of the measure that it draws."""
-    entry = _entry(name, PICTURES, "picture")
+    entry, options = _entry(name, PICTURES, "picture"), _in_si(options)
     if not entry.measure:
         return called(entry)(results, **options)[0]
     of_measure, own = entry.parted(options)

@@ -24,6 +24,7 @@ from ryusa.results import schema
 from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import Part
+from ryusa.results.place import refuse_other
 from ryusa.results.presentation import (
     FilmFile,
     Page,
@@ -109,12 +110,7 @@ class Results:
         ResultsError : not a run folder, damaged, or written in another format.
         """
         path = Path(folder)
-        if not path.is_dir():
-            raise ResultsError(f"{path}: no such run folder")
-        if not schema.is_run_folder(path):
-            raise ResultsError(
-                f"{path}: not a run folder of ryusa ({schema.PROVENANCE} or {schema.PARTS}/ is missing)"
-            )
+        refuse_other(path)
         return Results(path)
 
     @property

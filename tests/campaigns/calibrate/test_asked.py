@@ -102,6 +102,11 @@ def test_a_quantity_over_height_is_a_target_at_each_height(tmp_path):
             'case = "other/drop.toml"\nmeasure = "collisions"\nquantity = "closing_speed"',
             "has the name of another case",
         ),
+        (
+            'measure = "collisions"\nquantity = "restitution_alone"',
+            'measure = "discharge"\nquantity = "outlet"',
+            "observations.0.quantity = 'outlet': discharge gives 'rate_in', 'rate_out', 'grains_in'",
+        ),
         ("[calibrate]", "[calibrate", "is no TOML"),
         ("error = 0.01", "error = 0.01\ndiscrepancy = true", "observations.0.discrepancy = True: must be"),
         ("error = 0.01", 'error = 0.01\ntest = "other"', "is for observations of a heap"),

@@ -10,6 +10,7 @@ from tests.measure.test_numbers_of_the_catalogue import RUNS as ELSEWHERE
 from typer.testing import CliRunner
 
 import ryusa
+from ryusa.campaigns.calibrate.study_file import _refuse_quantity
 from ryusa.campaigns.soften import Answer, study_of
 from ryusa.cases import case_path
 from ryusa.catalogue import MEASURES, load
@@ -181,3 +182,5 @@ def test_the_numbers_of_the_catalogue_are_those_that_the_measure_gives(entry, ru
     more = {"window": 0.1} if entry.name in {"paths", "rods"} else {}
     found = load(entry.function)(runs[entry.name], **more)
     assert set(entry.numbers) <= names_and_units(found)
+    for name, _ in names_and_units(found):
+        _refuse_quantity("", entry.name, name)  # none that there is is refused

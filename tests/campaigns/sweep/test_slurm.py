@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from ryusa.campaigns.sweep.slurm import submission
 from ryusa.cases import case_path
 from ryusa.cli import app
 
@@ -65,8 +66,9 @@ def test_the_scripts_make_the_same_sweep_whatever_names_hold(awkward):
     array = out / "slurm" / "array.sh"
     assert "#SBATCH --array=0-1\n" in array.read_text()
     assert not (out / "runs").exists()
-    for element in (0, 1):
-        done = subprocess.run([BASH, array], cwd="/", env=environment(awkward, element), check=False)
+    for element in (0, 1):  # the second as the first of another array
+        beyond = environment(awkward, 0) | {"RYUSA_FIRST": str(element)}
+        done = subprocess.run([BASH, array], cwd="/", env=beyond, check=False)
         assert done.returncode == 0, (out / "slurm" / f"{element}.log").read_text()
     collected = subprocess.run([BASH, out / "slurm" / "collect.sh"], cwd="/", check=False)
     log = (out / "slurm" / "collect.log").read_text()
@@ -98,6 +100,17 @@ def test_a_run_at_its_time_limit_is_requeued_and_goes_on_from_its_checkpoint(awk
     (place,) = out.glob("runs/*")
     assert (place / "checkpoint.h5").is_file()
     assert json.loads((place / "provenance.json").read_text())["status"] == "stopped"
+
+
+def test_more_runs_than_slurm_takes_in_an_array_are_submitted_as_several() -> None:
+    lines = submission([Path("out/array.sh"), Path("out/collect.sh")], 2200)
+    assert lines[0] == "job=$(sbatch --parsable out/array.sh)"
+    assert [line.split("RYUSA_FIRST=")[1].split(" out")[0] for line in lines[1:-1]] == [
+        "1000 --array=0-999",
+        "2000 --array=0-199",
+    ]
+    assert lines[-1] == 'sbatch --dependency=afterany:"$job" out/collect.sh'
+    assert len(submission([Path("array.sh"), Path("collect.sh")], 1000)) == 2
 
 
 @pytest.mark.full

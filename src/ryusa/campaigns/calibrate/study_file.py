@@ -4,6 +4,7 @@ import math
 import tomllib
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from ryusa.campaigns.calibrate.prior import LOG, NORMAL, UNIFORM, Prior
 from ryusa.campaigns.sweep.definition import text_of
 from ryusa.campaigns.sweep.design import span_of
 from ryusa.casefile.files import toml_text
+from ryusa.casefile.toml_faults import encoding_fault, toml_fault
 from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, ParseError
 from ryusa.spelling import nearest_word
@@ -26,6 +28,18 @@ _NAMED = ("case", "measure", "quantity")
 _TARGET = (*_NAMED, "at")
 _OBSERVATION = (*_TARGET, "value", "error", "discrepancy", "test")
 
+# quantities of a measure beside the `numbers` of its line in the catalogue; * for names of the case
+FURTHER: dict[str, tuple[str, ...]] = {
+    "saltation": ("contact_time*", "bounce_time", "contacts_per_bounce", "impulse_*"),
+    "spin": ("rolling", "water_turn", "beyond_dennis"),
+    "rods": ("null_share", "kept"),
+    "water": ("surface", "bed"),
+    "transport": ("tau_star",),
+    "contact_stress": ("fabric_*",),
+    "surface": ("floor", "largest_*", "moving_share", "slope*", "time"),
+    "discharge": ("grains_in", "grains_out", "in by *", "out by *"),
+}
+
 
 def read_calibration(path: Path) -> CalibrationAsked:
     """Read the file of a calibration.
@@ -35,16 +49,18 @@ def read_calibration(path: Path) -> CalibrationAsked:
     CaseError : names the key, its value and what is allowed; all faults of the file together.
     ParseError : the file is no TOML.
     """
+    text = ""
     try:
-        data = tomllib.loads(toml_text(path))
+        text = toml_text(path)
+        data = tomllib.loads(text)
     except OSError as error:
         raise CaseError(
             "study", str(path), f"cannot be read ({error.strerror or error}); needs a TOML file"
         ) from None
-    except UnicodeDecodeError:
-        raise ParseError(path.name, 1, 1, "is no text in UTF-8") from None
+    except UnicodeDecodeError as error:
+        raise ParseError(path.name, 1, 1, encoding_fault(error)) from None
     except tomllib.TOMLDecodeError as error:
-        raise ParseError(path.name, 1, 1, f"is no TOML: {error}") from None
+        raise ParseError(path.name, 1, 1, f"is no TOML: {toml_fault(text, error)}") from None
     if "grains" in data:
         raise CaseError(
             "study", path.name, "is a case; a calibration is a file of its own, which names cases "
@@ -212,7 +228,22 @@ def _target(at: str, table: Mapping[str, Any], folder: Path, names: Sequence[str
             nearest_word(table["measure"], known),
         )  # fmt: skip
     at_height = _height(at, table) if "at" in table else None
+    if at_height is None:
+        _refuse_quantity(at, table["measure"], table["quantity"])
     return Target(folder / table["case"], table["measure"], table["quantity"], at_height)
+
+
+def _refuse_quantity(at: str, measure: str, name: str) -> None:
+    """Refuse a quantity that no run gives, of the measures whose quantities are known before."""
+    numbers = next((one.numbers for one in MEASURES if one.name == measure), ())
+    names = [*(one for one, _ in numbers), *FURTHER.get(measure, ())]
+    if numbers and not any(fnmatchcase(name, one) for one in names):
+        raise CaseError(
+            f"{at}.quantity",
+            name,
+            f"{measure} gives {', '.join(map(repr, names))}",
+            nearest_word(name, names),
+        )
 
 
 def _height(at: str, table: Mapping[str, Any]) -> float:

@@ -14,6 +14,7 @@ from ryusa.study.cost import LATE, SHORTEST, estimate_cost, memory_of, refuse_if
 
 SCRIPTS = "slurm"
 ARRAY, COLLECT = "array.sh", "collect.sh"
+MOST = 1000  # elements of an array: MaxArraySize, of a site that says nothing 1001, is above every index
 WARNING = 180  # s before the time limit at which a run is asked to end with a checkpoint
 
 _HEAD = """#!/bin/bash
@@ -21,7 +22,8 @@ _HEAD = """#!/bin/bash
 #SBATCH --cpus-per-task=1
 #SBATCH --mem={memory}M
 #SBATCH --time={minutes}
-#SBATCH --output=/dev/null
+#SBATCH --output=ryusa-%A.out
+#SBATCH --open-mode=append
 """
 _ARRAY = """#SBATCH --array=0-{last}
 #SBATCH --requeue
@@ -30,9 +32,10 @@ _ARRAY = """#SBATCH --array=0-{last}
 # checkpoint; its element is put back into the queue, and goes on there bit for bit.
 cd -- {place} || exit 1
 mkdir -p -- {logs} || exit 1
-exec >> {logs}/"$SLURM_ARRAY_TASK_ID".log 2>&1
+number=$((SLURM_ARRAY_TASK_ID + ${{RYUSA_FIRST:-0}}))
+exec >> {logs}/"$number".log 2>&1
 export NUMBA_NUM_THREADS=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-case "$SLURM_ARRAY_TASK_ID" in
+case "$number" in
 {cases}
 *) echo "no run has this number"; exit 1 ;;
 esac
@@ -94,7 +97,7 @@ def emit_slurm(plan: SweepPlan, folder: Path, words: Sequence[str]) -> tuple[tup
     if runs:
         cases = "\n".join(_case(k, one, folder) for k, one in enumerate(runs))
         text = (_HEAD + _ARRAY).format(
-            **about, **head, last=len(runs) - 1, warning=WARNING, cases=cases, stopped=_STOPPED,
+            **about, **head, last=min(len(runs), MOST) - 1, warning=WARNING, cases=cases, stopped=_STOPPED,
             case=shlex.quote(str(plan.case)),
         )  # fmt: skip
         scripts.append(_write(folder / SCRIPTS / ARRAY, text))
@@ -105,8 +108,8 @@ def emit_slurm(plan: SweepPlan, folder: Path, words: Sequence[str]) -> tuple[tup
     return tuple(scripts), len(runs)
 
 
-def submission(scripts: Sequence[Path]) -> list[str]:
-    """Lines of a shell that submit the scripts.
+def submission(scripts: Sequence[Path], n: int = 0) -> list[str]:
+    """Lines of a shell that submit the scripts, for `n` runs.
 
     >>> submission([Path("out/slurm/collect.sh")])
     ['sbatch out/slurm/collect.sh']
@@ -114,7 +117,12 @@ def submission(scripts: Sequence[Path]) -> list[str]:
     *array, collect = (shlex.quote(str(one)) for one in scripts)
     if not array:
         return [f"sbatch {collect}"]
-    return [f"job=$(sbatch --parsable {array[0]})", f'sbatch --dependency=afterany:"$job" {collect}']
+    more = [
+        f'job="$job":$(sbatch --parsable --export=ALL,RYUSA_FIRST={first} '
+        f"--array=0-{min(n - first, MOST) - 1} {array[0]})"
+        for first in range(MOST, n, MOST)
+    ]
+    return [f"job=$(sbatch --parsable {array[0]})", *more, f'sbatch --dependency=afterany:"$job" {collect}']
 
 
 def _case(k: int, one: SweepRun, folder: Path) -> str:

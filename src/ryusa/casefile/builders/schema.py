@@ -5,7 +5,18 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from ryusa.casefile.files import RelativePath
-from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import (
+    Boolean,
+    Count,
+    Length,
+    Moment,
+    Name,
+    Number,
+    Point,
+    PositiveLength,
+    Speed,
+    Spin,
+)
 from ryusa.casefile.row.schema import LineFile, LinePoints
 from ryusa.casefile.section import Section
 from ryusa.units import quantity
@@ -109,7 +120,7 @@ class TableSection(Section):
     made_of: dict[str, str] = Field(default_factory=dict)
     """Materials of free grains by their group in the file, such as { ball = "steel" }; the others are of the
     material of [grains]."""
-    allow_overlap: bool = False
+    allow_overlap: Boolean = False
     """Whether grains may overlap at the start."""
 
 
@@ -125,7 +136,7 @@ class RunSection(Section):
     made_of: dict[str, str] = Field(default_factory=dict)
     """Materials of free grains by their group in the run, such as { ball = "steel" }; the others are of the
     material of [grains]. What a feed brought is a group of its name."""
-    allow_overlap: bool = True
+    allow_overlap: Boolean = True
     """Whether grains may overlap at the start, as grains in contact do."""
 
 
@@ -153,7 +164,7 @@ class PackingSection(Section):
     """Range of the random heights, in mean diameters."""
     speed: Speed = 0.0
     """Speed along x at the start; grains released at rest may settle and never start to move."""
-    periodic: bool = True
+    periodic: Boolean = True
     """Periodic in x, and in y in three dimensions. With false the ends are open and grains leave the bed,
     unless [[planes]] close it at x = 0 and x = columns (1 + gap) largest diameters."""
 
@@ -167,7 +178,7 @@ class FlumeSection(Section):
     """Length of the channel, its period in x."""
     width: PositiveLength | None = None
     """Width of the channel in y; needed in three dimensions, not allowed in a plane scene."""
-    walls: bool = True
+    walls: Boolean = True
     """Smooth side walls, the planes `right` at y = 0 and `left` at y = width; false makes y periodic."""
     layers: Annotated[Number, Field(gt=0, le=100_000)]
     """Number of free grains, in layers; one layer is as many grains of mean diameter as fit side by side
@@ -251,7 +262,7 @@ class FillSection(Section):
     """Number of grains, the lowest ones; it is an error if fewer fit."""
     plate: PositiveLength | None = None
     """Radius of a round plate of touching fixed grains of mean diameter, as of builder "empty"."""
-    periodic: bool = False
+    periodic: Boolean = False
     """Periodic in x, and in y in three dimensions, with the lengths of the box; otherwise open."""
     gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
     """Gap between neighbours on the lattice, in largest diameters."""
@@ -277,7 +288,7 @@ class StreamSection(Section):
     end: Length | None = None
     """Where the bed ends; when not given at the lower end, or at the last point of its thickness. There is
     none on dams."""
-    walls: bool = True
+    walls: Boolean = True
     """Smooth side walls, the planes `right` at y = 0 and `left` at y = water.row.width; false makes y
     periodic."""
     gap: Annotated[Number, Field(ge=0, le=2)] = 0.05

@@ -1,15 +1,17 @@
 """Rows of `ryusa check` about impacts: how fast grains will collide, and how far they will overlap."""
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import fill_cells
 from ryusa.casefile.contact.fastest_impacts import overlaps_expected
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import adhesion, is_hertz, overlap_under
+from ryusa.casefile.contact.values import adhesion, is_hertz, largest_overlap, overlap_under
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import water_speed
+from ryusa.errors import CaseError
 from ryusa.laws.families import Adhesion
 
 if TYPE_CHECKING:
@@ -39,6 +41,20 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             number("impact", "travel per contact u t/d", travel, "-", origin, "warning" if skims else "")
         )
     return rows
+
+
+def check_overlap(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
+    """Find contacts so soft that grains pass through one another, but for single drops, which study that."""
+    if isinstance(case.build, DropSection):
+        return
+    impact = largest_overlap(case, expected_speed(case)[0]) / derived.d
+    overlap = max(impact, _at_rest(case, derived)[0])
+    if overlap > 1.0:
+        key = "youngs_modulus" if is_hertz(case) else "stiffness"
+        yield CaseError(
+            f"contact.{key}", data["contact"].get(key), f"is so small that grains would overlap by "
+            f"{overlap:.3g} diameters and pass through one another; motion is stable up to {STABLE[1]:g}",
+        )  # fmt: skip
 
 
 def _at_rest(case: "Case", derived: "Derived") -> tuple[float, str]:

@@ -287,12 +287,15 @@ def _dams(plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
             if not plan.x_low - 1e-9 <= at <= plan.x_low + plan.n * plan.dx + 1e-9:
                 last = plan.x_low + plan.n * plan.dx
                 yield CaseError(f"{key}.{name}", at, f"must lie in the row, {plan.x_low:g} to {last:g} m")
+        if not dam.begin < dam.end:
+            yield CaseError(f"{key}.end", dam.end, f"must lie downstream of its begin, {dam.begin:g} m")
+            return
         first, end = dam_span(plan, dam)
         if first == end:
             yield CaseError(
                 f"{key}.begin", dam.begin, f"from {dam.begin:g} to {dam.end:g} m lies no middle of a "
                 f"segment; a dam is at least one segment thick ({plan.dx:.4g} m), because a thin plate would "
-                "let through far more than it does",
+                "let through far more than it does. Take a shorter water.row.segment",
             )  # fmt: skip
             return
         yield from _dam(plan, dam, key, first, end)

@@ -37,6 +37,7 @@ from ryusa.casefile.row.values import (
     water_alone,
 )
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
+from ryusa.casefile.walls import box_of
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -67,9 +68,15 @@ def _walls(case: "Case") -> list[ExplainRow]:
     if case.build.kind == "stream" and case.build.walls and column_keys(case).side_walls is None:
         about = "build.walls; give water.column.side_walls = water.row.width for their friction on the water"
         rows.append(word("water", "side walls", "for grains alone", about, "note"))
-    if not case.walls:
+    dams = () if (keys := row_keys(case)) is None else keys.dams
+    without: list[str] = []
+    for k, one in enumerate(case.walls):
+        low, high = box_of(case, one, f"walls.{k}")
+        if not any(dam.begin < high[0] and dam.end > low[0] for dam in dams):
+            without.append(f"'{one.name}'")
+    if not without:
         return rows
-    names = ", ".join(f"'{one.name}'" for one in case.walls)
+    names = ", ".join(without)
     about = "water flows through them; for the water give a dam of [[water.row.dams]] within each"
     return [*rows, word("water", "walls for grains alone", names, about, "note")]
 

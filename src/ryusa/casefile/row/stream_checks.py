@@ -226,6 +226,8 @@ def _feed(
 
 def _outlet(case: "Case", high: float) -> Iterator[CaseError]:
     """All that passes the lower end must leave through an exit."""
+    if any(one.low is None and (one.point is None or not any(one.normal or ())) for one in case.exits):
+        return  # reported with the exit
     plan, wide = row_plan(case), width_of(case) or 0.0
     step, floor = 1.0e-6 * plan.dx, bottom_points(case)[-1][1]
     heights = np.linspace(floor, floor + plan.n_cell * plan.cell, 9)

@@ -38,7 +38,8 @@ def check_water(case: "Case") -> Iterator[CaseError]:
         yield CaseError("water.tau_star", None, text)
     if "speed" in takes and water.speed is None:
         yield CaseError("water.speed", None, f"missing; profile '{water.profile}' needs it")
-    if water.tau_star is not None and case.grains.density <= water.density:
+    floats = case.grains.density < water.density and not case.grains.buoyant  # reported below
+    if water.tau_star is not None and case.grains.density <= water.density and not floats:
         yield CaseError(
             "water.tau_star", water.tau_star, "needs grains denser than water; give u_star instead"
         )
@@ -72,6 +73,7 @@ def _that_floats(case: "Case", of_water: float) -> Iterator[CaseError]:
         yield CaseError(
             key, rho, f"is lighter than the water, {of_water:g} kg/m3, so that such grains rise and float; "
             "say grains.buoyant = true if they are meant to, or mend the density (quartz 2650 kg/m3)",
+            f"{rho:g} g/cm3" if of_water < 1000.0 * rho < 2.0e4 else None,
         )  # fmt: skip
     elif case.grains.buoyant and rho >= of_water:
         yield CaseError("grains.buoyant", True, "has no effect: no grain is lighter than the water")
