@@ -14,7 +14,7 @@ from PIL import Image, ImageSequence
 import ryusa
 from ryusa.cases import case_path
 from ryusa.errors import CaseError, ResultsError
-from ryusa.results import Results, shown
+from ryusa.results import Results, presentation
 
 pytestmark = pytest.mark.full
 
@@ -105,7 +105,10 @@ def test_a_name_that_is_none_is_refused_with_the_nearest(run):
 def test_options_are_taken_as_on_the_command_line(run):
     assert run.measure("tracks", begin="1 ms").rows() == run.measure("tracks", begin=1.0e-3).rows()
     assert run.draw("grains", at="1 ms") is not None
-    assert shown._in_si({"reach": "0.95 m to 1375 mm", "at": "5 ms"}) == {"reach": (0.95, 1.375), "t": 0.005}
+    assert presentation._in_si({"reach": "0.95 m to 1375 mm", "at": "5 ms"}) == {
+        "reach": (0.95, 1.375),
+        "t": 0.005,
+    }
     with pytest.raises(CaseError, match="begin = '1': missing unit"):
         run.measure("tracks", begin="1")
     with pytest.raises(CaseError, match=r"begn: tracks does not take it; .* Did you mean 'begin'"):
