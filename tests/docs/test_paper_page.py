@@ -15,7 +15,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 SHARE = re.compile(r"(none|\d+) of (\d+) settings( \((\d+) undecided\))?")
 LEDGERS = ("paper.json.xz", "paper-full.json.xz")
 # Registered after the runs of the kept ledgers: the page has no row of them until the next ledgers are kept.
-LATER = {"fig17-egashira", "fig17-parallel", "rolling-blind"}
+LATER = {"rolling-blind"}
 
 
 def page():
