@@ -161,8 +161,7 @@ def wall_time(case: Case, derived: Derived, *, threads: int = 1, engine: str = "
     by_rule, kind = wall_time_by_rule(case, derived), kind_of_run(case, threads, engine)
     ratios = run_times.ratios_of(kind)
     if not ratios:
-        # the engine refuses fewer threads than one
-        return WallTime(by_rule.stepping / max(threads, 1), by_rule.low, by_rule.high, 0, kind)
+        return WallTime(by_rule.stepping / threads, by_rule.low, by_rule.high, 0, kind)
     usual = median(ratios)
     return WallTime(usual * by_rule.stepping, min(ratios) / usual, max(ratios) / usual, len(ratios), kind)
 

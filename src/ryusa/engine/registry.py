@@ -156,6 +156,12 @@ def leading(name: str) -> Generator[bool]:
         yield leads
 
 
+def refuse_threads(threads: int) -> None:
+    """Raise a CaseError where there are no threads."""
+    if threads < 1:
+        raise CaseError("threads", threads, "must be at least 1")
+
+
 def create(name: str = DEFAULT, *, threads: int = 1, **options: Any) -> "Engine":
     """Create an engine by its name.
 
@@ -169,8 +175,7 @@ def create(name: str = DEFAULT, *, threads: int = 1, **options: Any) -> "Engine"
     CaseError : no engine has this name, it cannot be used here, or there are no threads.
     """
     found = entry(name)
-    if threads < 1:
-        raise CaseError("threads", threads, "must be at least 1")
+    refuse_threads(threads)
     reason = unavailable(name)
     if reason:
         raise CaseError("engine", name, reason)

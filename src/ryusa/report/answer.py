@@ -126,7 +126,7 @@ def _sentence(line: Headline, column: Sequence[Average], alone: bool) -> Sentenc
     if min(values) >= 0.0:
         found = not_negative(found)
     unit = "" if line.unit == "-" else "°" if line.unit == "deg" else f" {line.unit}"
-    whole = mean_of_runs(column) if len(column) > 1 else column[0]
+    whole = _whole(column)
     change = _change(whole, unit) if any(one.changes for one in column) else ""
     if _unsteady(column):
         sure = "still changing at the end of the run"
@@ -151,12 +151,15 @@ def _unsteady(column: Sequence[Average]) -> bool:
     """
     if not any(one.changes for one in column):
         return False
-    values, drift = [one.value for one in column], sum(one.drift for one in column) / len(column)
-    if not math.isfinite(drift) or any(math.isinf(one.variation) for one in column):
+    whole, found = _whole(column), over_seeds([one.value for one in column], "-")
+    if not math.isfinite(whole.drift) or math.isinf(whole.variation):
         return True
-    found = over_seeds(values, "-")
-    half = found.high - found.value if len(values) > 1 else 0.0
-    return abs(drift) > max(SMALL * abs(found.value), half)
+    half = found.high - found.value if len(column) > 1 else 0.0
+    return abs(whole.drift) > max(SMALL * abs(whole.value), half)
+
+
+def _whole(column: Sequence[Average]) -> Average:
+    return mean_of_runs(column) if len(column) > 1 else column[0]
 
 
 def _change(one: Average, unit: str) -> str:

@@ -101,6 +101,7 @@ def run(
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
         from ryusa.casefile.wall_time import keep_wall_time, wall_time
 
+        registry.refuse_threads(threads)  # whose number divides the time
         derived = derive(case)
         took = wall_time(case, derived, threads=threads, engine=_name(engine))
 
