@@ -285,8 +285,7 @@ def find_studies() -> None:
         beside = Path(ryusa.__file__).resolve().parents[2] / "studies"
         if not (beside / "ryusa_studies").is_dir():
             raise ResultsError(
-                "the paper and the validation are not installed: pip install 'ryusa[studies]', or type the "
-                "command with the python of a checkout of ryusa"
+                "the paper and the validation are not installed: pip install ./studies in a checkout of ryusa"
             )
         sys.path.append(str(beside))  # processes that carry out runs are given the same path
 
