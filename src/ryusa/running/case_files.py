@@ -1,9 +1,12 @@
-"""What a run folder keeps of a case beside its text: the first grains, and the words of its timeline."""
+"""What a run takes of a case beside its scene: the first grains, the words of its timeline, and its end."""
 
+import math
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from ryusa.running.stops import Stop
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -80,3 +83,14 @@ def timeline_texts(case: "Case") -> list[str]:
     if len(entries) != len(case.timeline):  # a case made in Python has no text
         entries = [{key: getattr(entry, key) for key in entry.model_fields_set} for entry in case.timeline]
     return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in entries]
+
+
+def stop_rule(case: "Case") -> Stop:
+    """When the run of this case ends."""
+    return Stop(
+        time=math.inf if case.stop.time is None else case.stop.time,
+        rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
+        rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
+        saltations=case.stop.saltations, settle=case.record.settle,
+        precision=case.stop.precision.limits() if case.stop.precision else {},
+    )  # fmt: skip

@@ -17,7 +17,7 @@ from ryusa.model import Scene, State
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
-from ryusa.running.case_files import files_beside, made_files, origin_of_reach, timeline_texts
+from ryusa.running.case_files import files_beside, made_files, origin_of_reach, stop_rule, timeline_texts
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
 from ryusa.running.disk import disk_errors, write_atomically
@@ -111,13 +111,6 @@ def run(
             said = other_engines(engine, built.scene.n_grain, took, threads)
             return built.scene, built.state, (*(str(note) for note in built.notes), *said)
 
-        stop = Stop(
-            time=math.inf if case.stop.time is None else case.stop.time,
-            rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
-            rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
-            saltations=case.stop.saltations, settle=case.record.settle,
-            precision=case.stop.precision.limits() if case.stop.precision else {},
-        )  # fmt: skip
         changes = [
             Change(entry.at, partial(change, case, entry=entry), words)
             for entry, words in zip(case.timeline, timeline_texts(case), strict=True)
@@ -133,7 +126,7 @@ def run(
             make,
             Path(folder if folder is not None else Path("runs") / case.name),
             case.record.frames,
-            stop,
+            stop_rule(case),
             changes,
             _Options(threads, progress, overwrite, engine, checkpoint, resume, force),
             about,
