@@ -149,7 +149,7 @@ def test_a_run_folder_holds_the_grains_that_it_started_from(falling: Results, tm
 def test_groups_planes_and_the_zero_of_the_water_come_from_the_run(tmp_path: Path) -> None:
     from ryusa.cases import case_path
 
-    short = {"stop.time": "5 ms", "record.settle": "0 s", "timeline": "[]"}
+    short = {"stop.time": "5 ms", "record.settle": "0 s", "record.frames": "5 ms", "timeline": "[]"}
     heap = read(case_path("heap.toml"), short)
     run(heap, tmp_path / "heap", progress=False)
     text = heap.text[: heap.text.index("[build]")] + '[build]\nkind = "run"\nfolder = "heap"\n'
