@@ -27,6 +27,7 @@ from ryusa.laws.families import (
     Drive,
     Fluctuations,
     Mixing,
+    Pressure,
     SideWalls,
     Start,
     SurfaceRule,
@@ -61,7 +62,7 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
     row = ColumnRow(
         _column(case, derived, plan), plan.dx, plan.bottom.copy(), derived.g * math.cos(derived.slope),
         _end(case, keys.upstream), _end(case, keys.downstream), solid, plan.x_low, porous,
-        plan.start.copy(), dams,
+        plan.start.copy(), dams, Pressure.of(keys.pressure),
     )  # fmt: skip
     faults = row.refuses()
     if stream(case):

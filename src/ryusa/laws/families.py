@@ -307,6 +307,14 @@ class SurfaceRule(Family, key="water.column.surface"):
     VOLUME = (1, "volume", None, "the volume of water; the surface moves")
 
 
+class Pressure(Family, key="water.row.pressure"):
+    """Pressure of the water along a row of columns."""
+
+    HYDROSTATIC = (0, "hydrostatic", None, "the weight of the water above, whatever its vertical motion")
+    FULL = (1, "full", None, "with what turns the water up and down: waves, nappes, jumps",
+        "design/0030; Casulli 1999; Stelling & Zijlema 2003")
+
+
 class Drive(Family, key="water.column.drive"):
     """What drives the water in addition to gravity along the slope."""
 

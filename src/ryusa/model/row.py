@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.families import Buoyancy, Drive, SurfaceRule
+from ryusa.laws.families import Buoyancy, Drive, Pressure, SurfaceRule
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
@@ -98,6 +98,7 @@ class ColumnRow(ByShape):
     porous: PorousSolid | None = None  # in the cells
     start: Floats | None = None  # height of the surface at the start [m], (n_segment,)
     dams: tuple[RowDam, ...] = ()  # names of what `solid` and `porous` hold
+    pressure: Pressure = Pressure.HYDROSTATIC
     GROUP: ClassVar[str] = "row"  # of its datasets in a run folder
 
     @property
@@ -109,6 +110,11 @@ class ColumnRow(ByShape):
     def periodic(self) -> bool:
         """Whether the last segment is followed by the first."""
         return self.upstream is None and self.downstream is None
+
+    @property
+    def hydrostatic(self) -> bool:
+        """Whether the pressure is the weight of the water above."""
+        return self.pressure is Pressure.HYDROSTATIC
 
     @property
     def inner(self) -> slice:
@@ -164,12 +170,13 @@ class ColumnRow(ByShape):
         """Shapes of the arrays of a `RowState` of this row."""
         n, stations = self.column.n, len(self.x_station)
         segments = self.n_segment + (0 if self.periodic else 2)
+        more = {} if self.hydrostatic else {"w": (segments, n + 1), "pressure": (segments, n)}
         return {
             "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
             "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
             "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
             "energy": (N_ROW_TERM,),
-        }  # fmt: skip
+        } | more  # fmt: skip
 
     def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
         """The same row with another gravity along and normal to the x axis [m/s2]."""
@@ -221,6 +228,10 @@ class ColumnRow(ByShape):
                 f"driver {c.drive.word}: in a row of several segments the flow has no gradient of its own; "
                 "give gravity, a pressure gradient, or a discharge at the upstream end"
             )
+        elif c.drive in (Drive.DISCHARGE, Drive.TAU) and not self.hydrostatic:
+            faults.append(
+                f"driver {c.drive.word}: it takes a hydrostatic pressure; give gravity or a pressure gradient"
+            )
         if self.solid is not None and (
             self.solid.shape != self.bottom.shape or self.solid.min() < 0 or self.solid.max() >= c.n
         ):
@@ -239,6 +250,11 @@ class ColumnRow(ByShape):
     def refuses_grains(self, buoyancy: Buoyancy, period: float) -> tuple[str, ...]:
         """Reasons why it cannot carry grains of a period along x [m], one sentence each; () if it can."""
         faults: list[str] = []
+        if not self.hydrostatic:
+            faults.append(
+                f"water.row.pressure = {self.pressure.word!r}: for water alone; with grains take "
+                f"{Pressure.HYDROSTATIC.word!r}"
+            )
         why = {
             Buoyancy.WEIGHT: "counts the slope of the surface twice",
             Buoyancy.PRESSURE: "lets still water among grains run down an inclined axis",
@@ -294,6 +310,10 @@ class RowState(ByShape):
     budgets: Floats  # momentum budget, shape (n_station, N_OUT)
     # energy account since the start [J/m], indexed by RowTerm
     energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
+    # with a pressure of its own: vertical speed at the faces [m/s], shape (n_all, n + 1), and pressure beyond
+    # the hydrostatic one over density in the cells below that of the surface [m2/s2], shape (n_all, n)
+    w: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    pressure: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done
     courant: float = 0.0  # largest Courant number met [-]

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.laws.families import Pressure
 from ryusa.model.column import Column
 from ryusa.model.course import Course
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowDam, RowEnd
@@ -25,7 +26,7 @@ def row_scalars(row: ColumnRow) -> dict[str, Any]:
                 del end["course"]
     return {
         "column": asdict(row.column), "dx": row.dx, "g_z": row.g_z, "x_low": row.x_low, **ends,
-        "dams": [asdict(one) for one in row.dams],
+        "dams": [asdict(one) for one in row.dams], "pressure": int(row.pressure),
     }  # fmt: skip
 
 
@@ -78,6 +79,7 @@ def row_from(scalars: dict[str, Any], arrays: dict[str, np.ndarray], column: Col
             )
             for one in scalars["dams"]
         ),
+        Pressure(int(scalars.get("pressure", 0))),
     )  # fmt: skip
     if faults := row.refuses():
         raise ValueError("; ".join(faults))

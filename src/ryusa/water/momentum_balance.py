@@ -255,6 +255,7 @@ def iterate(
     lost: float,
     per_dt: float,
     steep: float,
+    part: float,
     u: Floats,
     content: Floats,
     out: Floats,
@@ -267,7 +268,7 @@ def iterate(
     p, m, last, u_old, content_old, given, lost, per_dt, content, work : as in `assemble`.
     z_surface, u_star : height of the surface [m], and friction velocity at the speeds u [m/s].
     gradient : pressure gradient [Pa/m], where the column does not solve for it.
-    steep : factor of all stresses [-]; 1 unless the flow is inclined to the x axis (see `row_step`).
+    steep, part : factors of all stresses [-]; 1 unless the flow is inclined to the x axis (`row_station`).
 
     Returns
     -------
@@ -285,7 +286,7 @@ def iterate(
             mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
         linearise(p, m, u, content, work)
         if steep != 1.0:
-            steepen(m, steep, work)
+            steepen(m, steep, part, work)
         known = 0.0 if solve_gradient else gradient
         assemble(p, m, last, u_old, content, content_old, given, known, lost, per_dt, work)
         tridiagonal(last + 1, solve_gradient, work)
@@ -310,14 +311,14 @@ def iterate(
 
 
 @kernel
-def steepen(m: int, steep: float, work: StepWorkspace) -> None:
-    """Multiply the linearised stresses by the factor of a flow inclined to the x axis."""
+def steepen(m: int, steep: float, part: float, work: StepWorkspace) -> None:
+    """Multiply the linearised stresses by the factors of a flow inclined to the x axis."""
     for f in range(m + 2):
-        work.k_face[f] *= steep
-        work.r_face[f] *= steep
+        work.k_face[f] *= steep * part
+        work.r_face[f] *= steep * part
     for k in range(m + 1):
-        work.k_side[k] *= math.sqrt(steep)
-        work.r_side[k] *= math.sqrt(steep)
+        work.k_side[k] *= math.sqrt(steep) * part
+        work.r_side[k] *= math.sqrt(steep) * part
 
 
 @kernel

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -24,8 +25,9 @@ from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO
 from ryusa.water.row_energy import EnergyArrays
 from ryusa.water.row_inlet import NO_INFLOW
 from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_pressure import PressureArrays
 from ryusa.water.row_station import StationArrays
-from ryusa.water.row_step import COURANT_MET, FAULT_AT, N_SCALARS, STEPS
+from ryusa.water.row_step import COURANT_MET, FAULT_AT, N_SCALARS, NOT_PROJECTED, STEPS
 from ryusa.water.row_step import advance_row as _advance
 from ryusa.water.solve import FAULTS
 
@@ -33,6 +35,11 @@ NOTHING_ENTERS = (
     "No water can enter at the upper end: the first segment is dry, or its bed reaches the top of the cells",
     "Give the depth of the water that enters (water.row.upstream.depth), water in the first segment at the "
     "start, or higher cells (water.row.height).",
+)
+NO_PRESSURE = (
+    "No pressure was found that keeps the water of every cell",
+    "Look at the last frames: ryusa draw RUN long_section --at T. Shorter segments (water.row.segment), or "
+    'water.row.pressure = "hydrostatic", take a steeper surface.',
 )
 IN_A_ROW = {  # hints that differ from those of one column
     TOO_SHORT: "Raise the top of the cells (water.row.height), or let less water in.",
@@ -60,6 +67,7 @@ class RowArrays:
     shape: RowShape
     ends: RowEnds
     work: StationArrays
+    pressure: PressureArrays | None = None
 
     @staticmethod
     def of(row: ColumnRow) -> "RowArrays":
@@ -70,9 +78,11 @@ class RowArrays:
             np.zeros((stations, n)), np.zeros(stations), np.zeros(segments), np.zeros((segments, n)),
             np.zeros((segments, n + 1)), np.zeros((segments, n)), np.zeros((stations, n)), np.zeros(n),
             np.zeros((N_GIVEN, n)), np.zeros((6, n)), np.zeros((2, n + 1)), workspace(n),
-            EnergyArrays.of(stations, segments, n),
+            EnergyArrays.of(stations, segments, n), np.zeros(stations, np.int64),
+            np.zeros((stations, n)),
         )  # fmt: skip
-        return RowArrays(parameters_of(row.column), shape, ends_of(row), work)
+        pressure = None if row.hydrostatic else PressureArrays.of(shape, n)
+        return RowArrays(parameters_of(row.column), shape, ends_of(row), work, pressure)
 
 
 def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = None) -> RowState:
@@ -103,11 +113,9 @@ def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = Non
     wet[np.arange(c.n) < first[:, None]] = 0.0
     content = (1.0 - phi) * wet
     volume = np.array([cells.sum() for cells in content])  # the sum of `WaterState.at_rest`
-    stations = len(row.x_station)
-    return RowState(
-        np.zeros((stations, c.n)), volume, content, wet, level, np.zeros(stations),
-        np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1)), np.zeros((stations, N_OUT)),
-    )  # fmt: skip
+    arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in row.state_shapes().items()}
+    arrays.update(volume=volume, content=content, wet=wet, surface=level)
+    return RowState(**arrays)
 
 
 def advance_row(
@@ -150,22 +158,28 @@ def advance_row(
     )  # fmt: skip
     rows, faces = np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1))
     out, scalars = np.zeros((stations, N_OUT)), np.zeros(N_SCALARS)
+    pressure, own = arrays.pressure, dict[str, Floats]()
+    if pressure is not None:  # whose first step takes the eddy viscosities of the last one
+        faces[:] = state.edges
+        pressure.w[:], pressure.p[:] = state.w, state.pressure
     arrays.work.energy.books[:] = 0.0
     status = _advance(
         arrays.p, shape, arrays.ends, matrix, given, float(time), float(longest), water, arrays.work, rows,
-        faces, out, scalars,
+        faces, out, scalars, pressure,
     )  # fmt: skip
     if status != DONE:
-        cause, hint = NOTHING_ENTERS if status == NO_INFLOW else FAULTS[status]
+        cause, hint = (FAULTS | {NO_INFLOW: NOTHING_ENTERS, NOT_PROJECTED: NO_PRESSURE})[status]
         where = row.x_low + (scalars[FAULT_AT] - row.inner.start) * row.dx
         raise WaterError(
             f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=IN_A_ROW.get(status, hint)
         )
     energy = state.energy + arrays.work.energy.books
-    for array in (*water, rows, faces, out, energy):
+    if pressure is not None:
+        own = {"w": pressure.w.copy(), "pressure": pressure.p.copy()}
+    for array in (*water, rows, faces, out, energy, *own.values()):
         array.flags.writeable = False
     return replace(
-        state, **water._asdict(), profiles=rows, edges=faces, budgets=out, energy=energy,
+        state, **water._asdict(), **own, profiles=rows, edges=faces, budgets=out, energy=energy,
         t=state.t + time, steps=state.steps + int(scalars[STEPS]),
         courant=max(state.courant, float(scalars[COURANT_MET])),
     )  # fmt: skip
@@ -196,9 +210,10 @@ def shape_of(row: ColumnRow) -> RowShape:
             kind[j] = WALL
         if end is not None and end.kind is EndKind.DISCHARGE:
             kind[j] = INFLOW
+    steep = 1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2
     return RowShape(
         left, right, west, east, row.solid_cells(), row.cells_of_dams(), kind, bottom,
-        1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2, (row.inner.start, row.inner.stop),
+        steep, steep if row.hydrostatic else np.ones(len(left)), (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),
     )  # fmt: skip
 

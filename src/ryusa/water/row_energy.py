@@ -56,7 +56,7 @@ def kinetic_at(p: ColumnParameters, shape: RowShape, water: RowWater, j: int) ->
     a, b, total = shape.left[j], shape.right[j], 0.0
     for k in range(p.n):
         total += (water.content[a, k] + water.content[b, k]) * water.u[j, k] ** 2
-    return 0.25 * p.rho_w * shape.dx * shape.steep[j] * total
+    return 0.25 * p.rho_w * shape.dx * shape.inertia[j] * total
 
 
 @sums
@@ -68,7 +68,7 @@ def add_held(p: ColumnParameters, shape: RowShape, water: RowWater, times: float
             a, b, total = shape.left[j], shape.right[j], 0.0
             for k in range(p.n):
                 total += (water.content[a, k] + water.content[b, k]) * water.u[j, k] ** 2
-            kinetic += shape.steep[j] * total
+            kinetic += shape.inertia[j] * total
     for i in range(shape.inner[0], shape.inner[1]):
         total = 0.0
         for k in range(p.n):
@@ -251,7 +251,7 @@ def book_row(
         rises = height_at(p, shape, water, shape.right[j]) - height_at(p, shape, water, shape.left[j])
         works = -push[j] * shape.dx / weight
         books[GRAVITY] += p.rho_w * p.g_x * moved[j] * dt * shape.dx
-        given = out[j, GRADIENT] * shape.steep[j] - push[j] if p.drive == OF_DISCHARGE else driver
+        given = out[j, GRADIENT] * shape.inertia[j] - push[j] if p.drive == OF_DISCHARGE else driver
         books[DRIVER] += given * moved[j] * dt * shape.dx
         books[FALL] -= weight * dt * total[j] * (rises - works)
         books[SURFACE] += weight * dt * works * (moved[j] - total[j])

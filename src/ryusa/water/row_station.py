@@ -13,6 +13,7 @@ from ryusa.laws.families import BedKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.closures import mixing_lengths
+from ryusa.water.exchange import Ints
 from ryusa.water.momentum_balance import (
     B_ADVECTED,
     B_CHANGE,
@@ -50,6 +51,10 @@ class StationArrays(NamedTuple):
     edge: Floats  # stress and eddy viscosity there, shape (2, n + 1)
     step: StepWorkspace
     energy: EnergyArrays
+    last: Ints  # highest cell of each station that has a balance, -1 without water, shape (n_station,)
+    solved: (
+        Floats  # new speeds up to that cell, in dry ones that of falling water [m/s], shape (n_station, n)
+    )
 
 
 @kernel
@@ -70,7 +75,7 @@ def mean_of(a: float, b: float, x: float, y: float) -> float:
 
 @kernel
 def gather(
-    p: ColumnParameters, sill: int, gradient: float, quadratic_factor: float, left: int, right: int,
+    p: ColumnParameters, sill: int, gradient: float, steep: float, inertia: float, left: int, right: int,
     matrix_phi: Floats, linear: Floats, quadratic: Floats, phi: Floats, force: Floats, slope: Floats,
     carried: Floats, phi_w: Floats, u_old: Floats, content: Floats, wet: Floats, work: StationArrays,
 ) -> int:  # fmt: skip
@@ -81,7 +86,8 @@ def gather(
     m : highest wet cell above the sill, -1 without water.
     """
     step, given, now = work.step, work.given, work.level[2]
-    m = -1
+    m, part = -1, steep / inertia
+    quadratic_factor = steep**0.5 * part
     for at in range(p.n - sill):
         k = at + sill
         a, b = wet[left, k], wet[right, k]
@@ -94,13 +100,13 @@ def gather(
         given[0, at], given[2, at] = u, u
         given[1, at] = 0.5 * (work.old[left, k] + work.old[right, k])
         given[3, at] = mean_of(a, b, phi[left, k], phi[right, k])
-        given[4, at], given[5, at], given[6, at] = force[k], slope[k], carried[k]
+        given[4, at], given[5, at], given[6, at] = force[k], part * slope[k], carried[k]
         given[7, at] = phi_w[k]
         if h > 0.0:
             m = at
         solid = mean_of(a, b, matrix_phi[left, k], matrix_phi[right, k])
         if solid > 0.0 and h > 0.0:
-            one = 0.5 * (a * linear[left, k] + b * linear[right, k])
+            one = part * (0.5 * (a * linear[left, k] + b * linear[right, k]))
             two = quadratic_factor * 0.5 * (a * quadratic[left, k] + b * quadratic[right, k])
             per = p.rho_w / p.dz
             given[4, at] += per * (one + two * abs(u)) * u + solid * h / p.dz * gradient
@@ -113,11 +119,11 @@ def gather(
 
 @kernel
 def solve_station(
-    p: ColumnParameters, sill: int, steep: float, gradient: float, per_dx: float, per_dt: float, left: int,
-    right: int, j: int, matrix_phi: Floats, linear: Floats, quadratic: Floats, phi: Floats, force: Floats,
-    slope: Floats, carried: Floats, phi_w: Floats, u_old: Floats, content: Floats, wet: Floats,
-    surface: Floats, volume: Floats, laden: bool, work: StationArrays, rows: Floats, faces: Floats,
-    out: Floats,
+    p: ColumnParameters, sill: int, steep: float, inertia: float, gradient: float, per_dx: float,
+    per_dt: float, left: int, right: int, j: int, matrix_phi: Floats, linear: Floats, quadratic: Floats,
+    phi: Floats, force: Floats, slope: Floats, carried: Floats, phi_w: Floats, u_old: Floats,
+    content: Floats, wet: Floats, surface: Floats, volume: Floats, laden: bool, work: StationArrays,
+    rows: Floats, faces: Floats, out: Floats,
 ) -> int:  # fmt: skip
     """New speeds of a station, written to `work.u[j]`; profiles and budget as `time_step` writes them.
 
@@ -126,6 +132,7 @@ def solve_station(
     p : the column.
     sill : lowest cell open on both sides.
     steep : 1 + tan**2 of the angle between bottom and x axis [-].
+    inertia : the same where the pressure is hydrostatic; 1 where a pressure of its own turns the flow.
     gradient : pressure gradient [Pa/m].
     per_dx, per_dt : one over the length of a segment [1/m] and over the step [1/s].
     left, right, j : the segments beside the station, and the station.
@@ -141,17 +148,17 @@ def solve_station(
     -----
     In a flow inclined to the x axis by alpha, u is the part along x of the speed u/cos(alpha). Its inertia is
     `steep` times that of a level flow, its stresses `steep`**2 times, its quadratic drag and that of side
-    walls `steep`**1.5 times (design/0027). The balance is solved after division by `steep`.
+    walls `steep`**1.5 times (design/0027). The balance is solved after division by `inertia`.
 
     Water that falls behind a sill takes its momentum along; what rises before it brings none.
     """
     # One function: the balance of one station from its arrays to its budget, in the order of `time_step`
     cells = p.n - sill
-    here = p if steep == 1.0 else along(p, p.g_x / steep)
-    gradient = gradient / steep
+    here = p if inertia == 1.0 else along(p, p.g_x / inertia)
+    gradient = gradient / inertia
     m = gather(
-        p, sill, gradient, steep**0.5, left, right, matrix_phi, linear, quadratic, phi, force, slope, carried,
-        phi_w, u_old, content, wet, work,
+        p, sill, gradient, steep, inertia, left, right, matrix_phi, linear, quadratic, phi, force, slope,
+        carried, phi_w, u_old, content, wet, work,
     )  # fmt: skip
     step, given, edge, level = work.step, sources_of(work.given), work.edge, work.level
     for k in range(p.n):
@@ -163,17 +170,21 @@ def solve_station(
     for r in range(len(out)):
         out[r] = 0.0
     through, speed = work.energy.through, work.energy.speed
+    work.last[j] = sill + m
     if m < 0:
+        work.last[j] = -1
         work.energy.moved[j] = book_station(
             work.energy.books, through[left], through[right], speed[left], speed[right], work.given[1],
-            level[2], step.r, u_old, step.q, step.below, edge[0], sill, -1, p.rho_w, steep, per_dx, per_dt,
+            level[2], step.r, u_old, step.q, step.below, edge[0], sill, -1, p.rho_w, inertia, per_dx,
+            per_dt,
         )  # fmt: skip
         return DONE
     least = FALLING * 0.5 * (volume[left] + volume[right]) * per_dt
     last = m
     while last + 1 < cells and step.q[last + 1] < -least:
         last += 1
-    turned = np.sqrt(steep)
+    work.last[j] = sill + last
+    turned = np.sqrt(inertia)
     for at in range(cells):
         k = at + sill
         given.advected[at] = -(work.carried[right, k] - work.carried[left, k]) * per_dx / turned
@@ -193,7 +204,8 @@ def solve_station(
     for at in range(cells):
         level[0, at] = work.given[2, at]
     status, gradient = iterate(
-        here, m, last, z_surface, u_star, work.given[0], old, given, gradient, lost, per_dt, steep, level[0],
+        here, m, last, z_surface, u_star, work.given[0], old, given, gradient, lost, per_dt,
+        steep, steep / inertia, level[0],
         now, out, step,
     )  # fmt: skip
     if status != DONE:
@@ -202,17 +214,22 @@ def solve_station(
     out[SURFACE], out[GRADIENT] = z_surface, gradient
     work.energy.moved[j] = book_station(
         work.energy.books, through[left], through[right], speed[left], speed[right], old, now, step.r, u_old,
-        step.q, step.below, edge[0], sill, last, p.rho_w, steep, per_dx, per_dt,
+        step.q, step.below, edge[0], sill, last, p.rho_w, inertia, per_dx, per_dt,
     )  # fmt: skip
     if p.side != NO_WALLS:
-        area = steep / (per_dx * per_dt)
+        area = inertia / (per_dx * per_dt)
         book_side(work.energy.books, step.r, step.k_side, step.r_side, m, p.rho_w, area)
     if laden:
         book_resistance(
-            p, work.energy.books, step, work.given, edge[0], now, sill, m, steep, gradient, lost, per_dx,
+            p, work.energy.books, step, work.given, edge[0], now, sill, m, inertia, gradient, lost, per_dx,
             per_dt, force, slope,
         )  # fmt: skip
+    if inertia != steep:  # the stress along the flow, as elsewhere
+        for at in range(cells):
+            edge[0, at] *= inertia / steep
+            level[5, at] *= inertia / steep
     for at in range(last + 1):
+        work.solved[j, at + sill] = step.r[at]
         out[B_ADVECTED] += p.rho_w * given.advected[at]
     out[B_ADVECTED] += p.rho_w * step.q[0] * (1.0 - step.below[0]) * level[0, 0]
     for at in range(cells):

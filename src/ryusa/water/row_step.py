@@ -16,14 +16,21 @@ from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
 from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
 from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
 from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_pressure import PressureArrays, begin_pressure, find_tops, keep_w, viscosities
+from ryusa.water.row_pressure_energy import add_held_upwards, book_faces, book_projection, book_push
+from ryusa.water.row_projection import project, worst_segment
 from ryusa.water.row_station import StationArrays, solve_station
 from ryusa.water.time_step import distribute_water
 
 COURANT = 0.5  # largest (|u| + wave speed) dt/dx of a step; above it the interval is divided
 MOST_TAKEN = 0.98  # largest share of the water of a segment that leaves it in a step
 # scalars that `advance_row` writes
-FAULT_AT, STEPS, COURANT_MET = range(3)
-N_SCALARS = 3
+FAULT_AT, STEPS, COURANT_MET, TURNS = range(4)
+N_SCALARS = 4
+NOT_PROJECTED = 6  # after those of `momentum_balance` and `row_inlet`: no pressure was found
+DIFFUSED = (
+    0.25  # largest viscosity times dt/dx**2 of a step with a pressure of its own: along x it is explicit
+)
 
 
 @kernel
@@ -237,7 +244,7 @@ def continuity(
 def advance_row(
     p: ColumnParameters, shape: RowShape, ends: RowEnds, matrix: RowMatrix, grains: RowGrains, time: float,
     longest: float, water: RowWater, work: StationArrays, rows: Floats, faces: Floats, out: Floats,
-    scalars: Floats,
+    scalars: Floats, pressure: PressureArrays | None,
 ) -> int:  # fmt: skip
     """Move the water on, in as few equal steps as the Courant number and `longest` permit.
 
@@ -250,19 +257,30 @@ def advance_row(
     work : work arrays; the energy account of the time is added to `work.energy.books`.
     rows, faces, out : profiles and momentum budget of each station after the last step, as `time_step` writes
         them, with a leading axis of stations.
-    scalars : receives FAULT_AT (segment or station), STEPS and COURANT_MET, shape (N_SCALARS,).
+    scalars : receives FAULT_AT (segment or station), STEPS, COURANT_MET and TURNS, shape (N_SCALARS,).
+    pressure : state and work arrays of a pressure of its own; None, which compiles without it: hydrostatic.
 
     Returns
     -------
-    status : DONE, NO_INFLOW, or a fault of `momentum_balance`.
+    status : DONE, NO_INFLOW, NOT_PROJECTED, or a fault of `momentum_balance`.
     """
+    # One function: the order of a step, in which pressure beyond the hydrostatic one has its places
     remaining, energy = time, work.energy
     add_held(p, shape, water, -1.0, energy.books)
+    forces = grains.force
+    if pressure is not None:
+        add_held_upwards(p, shape, water, -1.0, pressure, energy.books)
+        forces = pressure.force
     while remaining > 0.0:
         speed = fastest(p, shape, water)
         if not math.isfinite(speed):
             return NOT_A_NUMBER
         dt = min(longest, COURANT * shape.dx / speed if speed > 0.0 else longest)
+        if pressure is not None:
+            find_tops(shape, water.wet, pressure.before)
+            most = viscosities(p, shape, faces, pressure.nu)
+            if most > 0.0:
+                dt = min(dt, DIFFUSED * shape.dx**2 / most)
         parts = max(math.ceil(remaining / dt - 1.0e-9), 1.0)
         dt = remaining / parts
         remaining = remaining - dt if parts > 1.0 else 0.0
@@ -278,6 +296,9 @@ def advance_row(
         status = continuity(p, shape, dt, grains.phi, water, work, scalars)
         if status != DONE:
             return status
+        if pressure is not None:
+            begin_pressure(p, shape, dt, matrix, grains.force, water, work, pressure)
+            book_faces(p, shape, dt, work, water, pressure, energy.books)
         first = shape.inner[0]
         driver = imposed_gradient(p, water.content[first], water.surface[first])
         for j in range(len(shape.left)):
@@ -287,9 +308,9 @@ def advance_row(
             gradient = driving_gradient(p, shape, j, water, driver)
             energy.push[j] = gradient - driver
             status = solve_station(
-                p, int(max(shape.first[left], shape.first[right])), shape.steep[j],
+                p, int(max(shape.first[left], shape.first[right])), shape.steep[j], shape.inertia[j],
                 gradient, 1.0 / shape.dx, 1.0 / dt, left, right, j,
-                matrix.phi, matrix.linear, matrix.quadratic, grains.phi, grains.force[j], grains.slope[j],
+                matrix.phi, matrix.linear, matrix.quadratic, grains.phi, forces[j], grains.slope[j],
                 grains.carried[j], grains.phi_w[j], water.u[j], water.content, water.wet, water.surface,
                 water.volume, grains.laden, work, rows[j], faces[j], out[j],
             )  # fmt: skip
@@ -297,11 +318,23 @@ def advance_row(
                 scalars[FAULT_AT] = j
                 return status
         book_row(p, shape, dt, driver, grains.phi, water, energy, work.total, out)
+        if pressure is not None:
+            book_push(p, shape, dt, grains.laden, work, water, pressure, energy.books, out)
         for j in range(len(shape.left)):
             if shape.kind[j] == OPEN:
                 for k in range(p.n):
                     water.u[j, k] = work.u[j, k]
+        if pressure is not None:
+            turns = project(p, shape, dt, matrix, water, work.flux, pressure)
+            if turns < 0:
+                scalars[FAULT_AT] = worst_segment(shape, pressure)
+                return NOT_PROJECTED
+            book_projection(p, shape, dt, water, pressure, energy.books, rows, out)
+            keep_w(shape, pressure)
+            scalars[TURNS] += turns
         scalars[STEPS] += 1.0
         scalars[COURANT_MET] = max(scalars[COURANT_MET], speed * dt / shape.dx)
     add_held(p, shape, water, 1.0, energy.books)
+    if pressure is not None:
+        add_held_upwards(p, shape, water, 1.0, pressure, energy.books)
     return DONE

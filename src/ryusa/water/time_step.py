@@ -131,8 +131,8 @@ def time_step(
     gradient = imposed_gradient(p, content, z_surface)
     u[:] = guess
     status, gradient = iterate(
-        p, m, last, z_surface, u_star, u_old, content_old, given, gradient, lost, per_dt, 1.0, u, content,
-        out, work,
+        p, m, last, z_surface, u_star, u_old, content_old, given, gradient, lost, per_dt, 1.0, 1.0, u,
+        content, out, work,
     )  # fmt: skip
     if status == DONE:
         out[SURFACE], out[GRADIENT] = z_surface, gradient

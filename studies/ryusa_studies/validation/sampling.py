@@ -121,6 +121,7 @@ SAMPLING: Mapping[str, Sampling] = {
 CLOSED: Mapping[str, str] = {
     "water_alone": "a column of water, solved for its steady state",
     "river": "a row of columns of water; with grains, the seeds that were registered",
+    "river_pressure": "a row of columns of water alone",
     "river_debris": "debris flows in a row of columns, with the seeds that were registered",
     "terminal_velocity": "one grain",
     "suspension": "a lattice of grains that do not touch",

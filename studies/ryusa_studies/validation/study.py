@@ -16,6 +16,7 @@ from ryusa_studies.validation.sampling import CLOSED, sampling_lines
 NAMES = (
     "water_alone",
     "river",
+    "river_pressure",
     "river_debris",
     "terminal_velocity",
     "suspension",

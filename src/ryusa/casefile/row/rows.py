@@ -38,6 +38,7 @@ from ryusa.casefile.row.values import (
 )
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.casefile.walls import box_of
+from ryusa.laws.families import Pressure
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -96,8 +97,10 @@ def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
     )
     ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
+    own = Pressure.of(keys.pressure)
     return [
         *_segments(case, ends),
+        *([] if own is Pressure.HYDROSTATIC else [word("water", "pressure", own.word, own.about)]),
         number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
         number(
             "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",

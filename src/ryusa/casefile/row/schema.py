@@ -6,8 +6,9 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 
 from ryusa.casefile.course import FILE_OR_POINTS, AtPoints, CourseFile, file_or_points
 from ryusa.casefile.files import RelativePath
-from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, PositiveLength
+from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, PositiveLength, WordOf
 from ryusa.casefile.section import Section
+from ryusa.laws import families
 from ryusa.units import UnitError, quantity
 
 if TYPE_CHECKING:
@@ -129,6 +130,9 @@ class RowSection(Section):
     surface: Line | None = None
     """Surface of the water at the start, as pairs of x and z or a CSV file; below the bottom it is dry.
     Instead of water.depth, the depth over the bottom."""
+    pressure: Annotated[str, WordOf(families.Pressure)] = "hydrostatic"
+    """Pressure of the water: the weight of what lies above, or with what turns the water up and down, which
+    short waves, nappes, jumps and pores need. For water alone; a step takes about twice as long."""
     width: PositiveLength | None = None
     """Width of the stream, for grains and for a discharge in m3/s; `column.side_walls` when not given."""
     upstream: RowEndSection | None = None

@@ -1,0 +1,150 @@
+"""A hydraulic jump in a row of columns with a pressure of its own and its own turbulence (design/0030).
+
+The limits are those that were asked for before any jump was run.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import BedKind, Mixing, Pressure, SurfaceRule
+from ryusa.model.arrays import Floats
+from ryusa.model.column import Column
+from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
+from ryusa.study import (
+    Band,
+    Finding,
+    Found,
+    Level,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
+from ryusa.water.row import advance_row, row_at_rest
+
+G = 9.80665
+BEFORE = 0.02  # depth that enters [m]
+FROUDE = (2.0, 3.0, 4.0, 5.0)  # of what enters
+TIME = 15.0  # [s]
+CONJUGATE = at_most(0.02, "2 % of the conjugate depth")
+LENGTH = Band(3.0, 7.0, "-", "of the depth behind: measured jumps are 4 to 6 long")
+LOSS = at_most(0.05, "5 % of the loss of a jump")
+
+
+def conjugate(depth: float, q: float) -> float:
+    """Depth behind a jump without friction [m], for the depth before it and the discharge [m2/s]."""
+    froude = q / math.sqrt(G * depth**3)
+    return 0.5 * depth * (math.sqrt(1.0 + 8.0 * froude**2) - 1.0)
+
+
+def heads(row: ColumnRow, now: RowState) -> tuple[Floats, Floats]:
+    """Depth, and energy head by the speeds at all heights, at the stations between segments [m]."""
+    left, right = row.stations_between
+    content = 0.5 * (now.content[left] + now.content[right])
+    depth = content.sum(axis=1)
+    flow = (content * now.u).sum(axis=1)
+    return depth, depth + (content * now.u**3).sum(axis=1) / (2.0 * G * np.where(flow > 0.0, flow, 1.0))
+
+
+def jump(froude: float, pressure: str) -> dict[str, Floats]:
+    """A jump that the level at the end of a smooth flume holds: surface, heads, and the three numbers.
+
+    Notes
+    -----
+    First the flow runs alone; the level is the depth conjugate to what it has in the middle of the flume, and
+    there the jump begins.
+    """
+    q = froude * math.sqrt(G * BEFORE**3)
+    behind = conjugate(BEFORE, q)
+    dx, dz = BEFORE, BEFORE / 6.0
+    n = round(24.0 * behind / dx)
+    c = Column(
+        z_low=0.0, dz=dz, n=round(1.5 * behind / dz), depth=BEFORE, nu=1e-6, bed=BedKind.SMOOTH,
+        mixing=Mixing.PARABOLIC, surface=SurfaceRule.VOLUME,
+    )  # fmt: skip
+    inlet = RowEnd(EndKind.DISCHARGE, discharge=q, depth=BEFORE)
+    fast = ColumnRow(c, dx, np.zeros(n), G, inlet, RowEnd(EndKind.UNIFORM), pressure=Pressure.of(pressure))
+    now = row_at_rest(fast, np.full(n, BEFORE))
+    now = advance_row(fast, replace(now, u=np.full_like(now.u, q / BEFORE)), 5.0 * n * dx / (q / BEFORE))
+    depth = now.surface[fast.inner]
+    held = conjugate(float(depth[n // 3]), q)
+    row = replace(fast, downstream=RowEnd(EndKind.LEVEL, level=held))
+    start = row_at_rest(row, np.where(np.arange(n) < n // 3, depth, held))
+    speeds = np.where(np.arange(n + 1)[:, None] <= n // 3, now.u, q / held)
+    now = replace(start, u=speeds)
+    surfaces, energies = list[Floats](), list[Floats]()
+    for _ in range(30):
+        now = advance_row(row, now, TIME / 30)
+        surfaces.append(now.surface[row.inner].copy())
+        energies.append(heads(row, now)[1])
+    surface, energy = np.mean(surfaces[-10:], axis=0), np.mean(energies[-10:], axis=0)
+    toe = int(np.argmax(surface > surface[: n // 2].min() + 0.05 * (held - surface[: n // 2].min())))
+    toe = max(toe, 1)
+    first = float(surface[toe - 1])
+    second = float(surface[toe : toe + round(8.0 * held / dx)].max())
+    end = toe + int(np.argmax(surface[toe:] > first + 0.95 * (second - first)))
+    after = min(toe + round(6.0 * second / dx), n - 2)
+    lost = float(energy[toe - 1] - energy[after])
+    return {
+        "x": row.x, "surface": surface, "energy": energy, "toe": np.array(row.x[toe]),
+        "conjugate": np.array(float(surface[after]) / conjugate(first, q)),
+        "length": np.array((end - toe + 1) * dx / second),
+        "loss": np.array(lost / ((conjugate(first, q) - first) ** 3 / (4.0 * conjugate(first, q) * first))),
+        "froude": np.array(q / math.sqrt(G * first**3)),
+    }  # fmt: skip
+
+
+def _asked(plan: Plan) -> tuple[float, ...]:
+    """Froude numbers of a level."""
+    return FROUDE[1:2] if plan.level is Level.QUICK else FROUDE
+
+
+def _task(froude: float) -> Task:
+    return calculation(jump, froude=froude, pressure=Pressure.FULL.word, seconds=10.0 * froude)
+
+
+def tasks(plan: Plan) -> Sequence[Task]:
+    """A jump for each Froude number; one when quick."""
+    return [_task(one) for one in _asked(plan)]
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Depth, length and loss of each."""
+    runs = {froude: found[_task(froude)] for froude in _asked(plan)}
+    numbers = [
+        number
+        for froude, run in runs.items()
+        for number in (
+            misfit(
+                f"Fr = {froude:g}: depth behind over conjugate depth, off by",
+                abs(float(run["conjugate"]) - 1.0), "-", CONJUGATE,
+            ),
+            misfit(f"Fr = {froude:g}: length over depth behind", float(run["length"]), "-", LENGTH),
+            misfit(
+                f"Fr = {froude:g}: loss over that of a jump, off by", abs(float(run["loss"]) - 1.0), "-", LOSS
+            ),
+        )
+    ]  # fmt: skip
+    return [
+        comparison(
+            "jump", "Hydraulic jumps",
+            Source("Belanger 1828; loss (h2 - h1)**3/(4 h1 h2); lengths of Hager 1992"),
+            Axis("distance from the toe", "m"), Axis("surface", "m"),
+            [
+                Curve(f"Fr {float(run['froude']):.2f}", run["x"] - run["toe"], run["surface"])
+                for run in runs.values()
+            ],
+            [], numbers,
+            {
+                "enters": f"{100.0 * BEFORE:g} cm deep at Fr {', '.join(f'{one:g}' for one in runs)}",
+                "turbulence": "mixing length of the row, nothing fitted",
+            },
+        )
+    ]  # fmt: skip
