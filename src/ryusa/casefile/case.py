@@ -74,6 +74,11 @@ class Case(Section):
         return self._path
 
     @property
+    def folder(self) -> Path:
+        """Folder of the case file; the current one for a case given as text."""
+        return (self._path.parent if self._path is not None else Path()).resolve()
+
+    @property
     def overrides(self) -> dict[str, str]:
         """Keys set from outside the file."""
         return dict(self._overrides)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import Field
 
-from ryusa.casefile.files import RelativePath, contents, folder_of, inside
+from ryusa.casefile.files import RelativePath, contents, inside
 from ryusa.casefile.quantities import Number
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section
@@ -98,7 +98,7 @@ def _kept(case: "Case", name: str) -> Spheres | None:
     """Spheres that a run made of this shape, where the case is that of its folder."""
     from ryusa.results import schema
 
-    folder = folder_of(case)
+    folder = case.folder
     path = folder / schema.CASE_JSON
     if case.path is None or not schema.is_run_folder(folder) or not path.is_file() or path.is_symlink():
         return None
@@ -172,10 +172,10 @@ def _body(case: "Case", name: str) -> _Body:
     """
     file, key = case.shapes[name].file, f"shapes.{name}.file"
     assert file is not None
-    path = inside(case, key, file)
+    path = inside(case.folder, key, file)
     if path.suffix.lower() not in KINDS:
         raise CaseError(key, file, "must be an STL or OBJ file")
-    return contents(case, key, file, path, partial(_read, key))
+    return contents(case.folder, key, file, path, partial(_read, key))
 
 
 @lru_cache(maxsize=8)

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.files import contents, folder_of, inside
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
 from ryusa.formats.sieve import read_sieve_curve
@@ -35,7 +35,7 @@ def points_of(case: "Case") -> tuple[tuple[float, float], ...] | None:
         return given
     path = sieve_file(case)
     assert path is not None
-    return contents(case, KEY, given, path, _read)
+    return contents(case.folder, KEY, given, path, _read)
 
 
 @lru_cache(maxsize=4)
@@ -50,10 +50,10 @@ def sieve_file(case: "Case") -> Path | None:
         return None
     from ryusa.results import schema
 
-    kept = folder_of(case) / schema.SIEVE
+    kept = case.folder / schema.SIEVE
     if schema.is_run_folder(kept.parent) and kept.is_file() and not kept.is_symlink():
         return kept
-    return inside(case, KEY, given)
+    return inside(case.folder, KEY, given)
 
 
 def grading_of(case: "Case") -> Grading | None:

@@ -63,7 +63,7 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     CaseError : no such file, not a mesh, or an unknown unit.
     """
     assert wall.file is not None
-    path = inside(case, f"{key}.file", wall.file)
+    path = inside(case.folder, f"{key}.file", wall.file)
     try:
         unit = quantity(f"1 {wall.unit}", "m")
     except ValueError as error:
@@ -73,7 +73,7 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     if wall.turn_axis is not None and wall.turn_angle is not None:
         turn = (wall.turn_axis, wall.turn_angle)
     placed = partial(_placed, unit * wall.scale, turn, wall.at or (0.0, 0.0, 0.0))
-    return contents(case, f"{key}.file", wall.file, path, placed)
+    return contents(case.folder, f"{key}.file", wall.file, path, placed)
 
 
 @lru_cache(maxsize=8)

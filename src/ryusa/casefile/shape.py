@@ -168,7 +168,7 @@ def _clump_of(case: "Case", key: str, name: str) -> Clump:
             )
             raise CaseError(key, name, known, nearest_word(name, words))
         return _of_library(name)
-    return contents(case, key, name, inside(case, key, name), _of_file)
+    return contents(case.folder, key, name, inside(case.folder, key, name), _of_file)
 
 
 @lru_cache(maxsize=16)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.builders.schema import BedOfRunSection, RunSection, TableSection
-from ryusa.casefile.files import contents, folder_of, inside
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError, ResultsError
@@ -81,7 +81,7 @@ def area_of_file(case: "Case") -> float | None:
 
 
 def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
-    path = inside(case, "build.file", build.file)
+    path = inside(case.folder, "build.file", build.file)
     options = ReadOptions(
         frame=build.frame,
         length=quantity(f"1 {build.length_unit}", "m"),
@@ -90,7 +90,7 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
         stated=given(build, "length_unit") and given(build, "time_unit"),
         fixed_types=build.fixed_types,
     )
-    table = contents(case, "build.file", build.file, path, partial(_read, build.format, options))
+    table = contents(case.folder, "build.file", build.file, path, partial(_read, build.format, options))
     heavy = {"density", "m"} & table.columns.keys()
     if heavy and given(build, "length_unit") and not given(build, "mass_unit"):
         # a file in centimetres may count in grams
@@ -159,10 +159,10 @@ def _table_of_run(case: "Case", key: str, name: str, at: float | None) -> GrainT
     """Read the frame nearest to a time [s], or the last; a run folder holds what its own run started from."""
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, key, name)
+    folder, path = case.folder, inside(case.folder, key, name)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
-        return contents(case, key, schema.START, start, partial(_read, "csv", ReadOptions()))
+        return contents(case.folder, key, schema.START, start, partial(_read, "csv", ReadOptions()))
     try:
         changed = (path / schema.PARTS).stat().st_mtime_ns
     except OSError:

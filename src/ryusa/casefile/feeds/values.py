@@ -62,7 +62,7 @@ def sedigraph_points(case: "Case", feed: FeedSection) -> Points:
     """Points of a sedigraph as given, or as its file holds them."""
     key = f"feeds.{case.feeds.index(feed)}.sedigraph"
     assert feed.sedigraph is not None
-    return points_of(case, key, feed.sedigraph, "rate", read_rate, "'t [s],rate [kg/s]'")
+    return points_of(case.folder, key, feed.sedigraph, "rate", read_rate, "'t [s],rate [kg/s]'")
 
 
 def unit_of(case: "Case", feed: FeedSection) -> str:

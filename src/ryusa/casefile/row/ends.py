@@ -39,7 +39,7 @@ def hydrograph_of(case: "Case") -> Course | None:
 
 def hydrograph_points(case: "Case", given: Any) -> Points:
     """Points of a hydrograph as given, or as its file holds them."""
-    return points_of(case, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
+    return points_of(case.folder, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
 
 
 def stage_of(case: "Case") -> Course | None:
@@ -52,7 +52,7 @@ def stage_of(case: "Case") -> Course | None:
 
 def stage_points(case: "Case", given: Any) -> Points:
     """Points of a stage as given, or as its file holds them."""
-    return points_of(case, STAGE, given, "z", _metres, "'t [s],z [m]'")
+    return points_of(case.folder, STAGE, given, "z", _metres, "'t [s],z [m]'")
 
 
 def _metres(value: str) -> float:

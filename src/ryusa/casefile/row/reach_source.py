@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.files import inside
 from ryusa.casefile.row.reach import END, KEY, FeederReach, digest_of
 from ryusa.casefile.row.reach_record import supplied
 from ryusa.casefile.row.schema import row_keys
@@ -45,7 +45,7 @@ def reach_of(case: "Case") -> FeederReach | None:
         return None
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, KEY, name)
+    folder, path = case.folder, inside(case.folder, KEY, name)
     kept = folder / schema.REACH
     if schema.is_run_folder(folder) and kept.is_file() and not kept.is_symlink():
         return _kept(kept, name, kept.stat().st_mtime_ns)

@@ -75,7 +75,7 @@ def line_points(case: "Case", key: str, given: Points | str) -> Points:
     """
     if not isinstance(given, str):
         return given
-    return contents(case, key, given, inside(case, key, given), _read)
+    return contents(case.folder, key, given, inside(case.folder, key, given), _read)
 
 
 @lru_cache(maxsize=4)
