@@ -17,8 +17,8 @@ from ryusa.casefile.builders.values import (
     plate_of,
 )
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.grains import graded
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 

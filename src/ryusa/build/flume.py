@@ -12,10 +12,9 @@ from ryusa.casefile.builders.values import bed_counts, flume_count
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import graded
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -72,7 +71,7 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
     base : height from which loose grains fill the bed [m].
     crest : mean top of the fixed grains [m]; None over a plane.
     """
-    keys = column_keys(case)
+    keys = case.column
     if case.water is None or case.water.profile != "column" or keys.bed != "moving":
         if keys.bottom is not None:
             return keys.bottom, "at water.column.bottom"

@@ -7,7 +7,7 @@ from ryusa.build.placement import Placement
 from ryusa.build.sizes import laid_materials
 from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.case import Case
-from ryusa.casefile.materials import GRAINS, density, names_of
+from ryusa.casefile.materials.values import GRAINS, density, names_of
 from ryusa.model import Traffic
 from ryusa.model.scene import Floats
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import CUT, has_own_sizes, sized_as, spread_of
+from ryusa.casefile.grains.schema import spread_of
+from ryusa.casefile.grains.values import CUT, has_own_sizes, sized_as
 from ryusa.model.scene import Floats
 
 _STREAM = 0x4D415445  # tells the materials of grains from their sizes

@@ -14,8 +14,8 @@ from ryusa.build.placement import ROOM_BELOW, Placement
 from ryusa.build.servo import Servo, servo_rows
 from ryusa.build.wall_checks import refuse_wide_round_faces
 from ryusa.casefile.case import Case
-from ryusa.casefile.mesh import mesh_of
-from ryusa.casefile.walls import WallSection
+from ryusa.casefile.walls.mesh import mesh_of
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
 from ryusa.formats.mesh import MOST_TRIANGLES
 from ryusa.model import FaceKind, Scene, Walls

@@ -6,8 +6,8 @@ import shutil
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import is_hertz, timing
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.record import MANY, events_of
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.record.values import MANY, events_of
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.casefile.wall_time import cells_of_row, steps_expected, time_expected, wall_time, wall_time_by_rule

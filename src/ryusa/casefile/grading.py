@@ -4,17 +4,14 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
 from ryusa.formats.sieve import read_sieve_curve
 from ryusa.model.grading import SHARES, Grading, GradingFault
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
 KEY = "grains.sieve_curve"
 BUILDERS = ("packing", "flume", "box", "fill", "empty", "stream")  # those that draw sizes
@@ -23,7 +20,7 @@ COARSE = 0.05  # share of the mass in one grain above which a curve is laid poor
 DURATION = 1.5  # power of the diameter that the shortest contact follows at one stiffness
 
 
-def points_of(case: "Case") -> tuple[tuple[float, float], ...] | None:
+def points_of(case: Case) -> tuple[tuple[float, float], ...] | None:
     """Diameter [m] and percent finer of the sieve curve as given, in its order; None without one.
 
     Raises
@@ -43,7 +40,7 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> tuple[tuple[float
     return read_sieve_curve(path, name)
 
 
-def sieve_file(case: "Case") -> Path | None:
+def sieve_file(case: Case) -> Path | None:
     """File of the sieve curve; a run folder holds the one that its own run read."""
     given = case.grains.sieve_curve
     if not isinstance(given, str):
@@ -56,7 +53,7 @@ def sieve_file(case: "Case") -> Path | None:
     return inside(case.folder, KEY, given)
 
 
-def grading_of(case: "Case") -> Grading | None:
+def grading_of(case: Case) -> Grading | None:
     """Curve of the grains that are laid: what lies between `finest` and `coarsest`, as 100 %; None without.
 
     Raises
@@ -82,7 +79,7 @@ def _whole(points: tuple[tuple[float, float], ...]) -> Grading:
     return Grading.of([(d, percent / 100.0) for d, percent in points])
 
 
-def reference_diameter(case: "Case") -> float:
+def reference_diameter(case: Case) -> float:
     """Diameter of u_star, roughness, overlap/d and fixed grains [m]: grains.diameter, or D50 of the curve."""
     if case.grains.diameter is not None:
         return case.grains.diameter
@@ -92,7 +89,7 @@ def reference_diameter(case: "Case") -> float:
     return grading.diameter(0.5)
 
 
-def check_grading(case: "Case") -> Iterator[CaseError]:
+def check_grading(case: Case) -> Iterator[CaseError]:
     """Find a curve that does not say what every grain is, and keys or builders that have no use for it."""
     grains = case.grains
     if grains.sieve_curve is None:
@@ -174,7 +171,7 @@ def _ends(whole: Grading, finest: float | None, coarsest: float | None) -> Itera
 # ---------------------------------------------------------------------------------------- rows of ryusa check
 
 
-def grading_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def grading_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Sizes of the curve, what is cut of it, how well so many grains lay it and what the finest cost."""
     grading, points = grading_of(case), points_of(case)
     if grading is None or points is None:
@@ -201,7 +198,7 @@ def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
     return number("grains", f"D{round(100 * share)}", laid, "cm", origin, flag)
 
 
-def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
+def _cut_rows(case: Case, whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
     """What truncation leaves out, and what it would have cost.
 
     The shortest contact is one of the finest grains, and a cell of the search for neighbours is as wide as
@@ -239,7 +236,7 @@ def _share(name: str, share: float, origin: str) -> ExplainRow:
     return ExplainRow("grains", name, share, "-", f"{100.0 * share:.3g} %", origin, "warning")
 
 
-def _laid_rows(derived: "Derived", grading: Grading) -> Iterator[ExplainRow]:
+def _laid_rows(derived: Derived, grading: Grading) -> Iterator[ExplainRow]:
     """How closely so many grains can lay the curve."""
     if derived.n_grain < 1:
         return
@@ -251,7 +248,7 @@ def _laid_rows(derived: "Derived", grading: Grading) -> Iterator[ExplainRow]:
     yield ExplainRow("grains", "curve met within", share, "-", f"{100.0 * share:.3g} %", origin, flag)
 
 
-def _cost(derived: "Derived", grading: Grading) -> ExplainRow:
+def _cost(derived: Derived, grading: Grading) -> ExplainRow:
     """What the finest grains cost, against equal grains of the reference diameter."""
     finest, tenth = float(grading.d[0]), grading.diameter(0.1)
     steps, grains = (derived.d / finest) ** DURATION, derived.d**3 / grading.mean_cube

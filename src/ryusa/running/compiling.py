@@ -5,7 +5,6 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import has_clumps
@@ -99,7 +98,7 @@ def expected_of(*, grains: bool, clumps: bool, column: bool, row: bool) -> dict[
 
 def compiling_row(case: "Case") -> ExplainRow:
     """Row of `ryusa check` of the time that compiling takes at most."""
-    row = row_keys(case) is not None
+    row = case.row is not None
     column = case.water is not None and case.water.profile == "column"
     expected = expected_of(grains=not water_alone(case), clumps=has_clumps(case), column=column, row=row)
     seconds = waiting.at_most(expected)

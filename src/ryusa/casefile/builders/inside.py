@@ -4,22 +4,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.mesh import Mesh, mesh_of
+from ryusa.casefile.case import Case
+from ryusa.casefile.walls.mesh import Mesh, mesh_of
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
 from ryusa.model.arrays import Floats
 from ryusa.model.closed_mesh import MeshFault
 from ryusa.model.enclosure import ROUND_OFF, CylinderInside, Enclosure, Grid, MeshInside
 from ryusa.model.walls import Ints
 from ryusa.spelling import nearest_word
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.walls import WallSection
 
 MOST_CELLS = 10_000_000  # of the lattice round a wall
 _FEW = 4096  # cells up to which the lattice is moved by half a cell to see where most grains fit
@@ -43,7 +40,7 @@ class CellsInside:
     free: Floats
 
 
-def enclosure_of(case: "Case") -> Enclosure:
+def enclosure_of(case: Case) -> Enclosure:
     """The inside of the wall that builder 'fill' names.
 
     Raises
@@ -74,7 +71,7 @@ def enclosure_of(case: "Case") -> Enclosure:
         raise CaseError("build.inside", wall.name, f"{error}; {_REMEDY}, or mend the mesh") from None
 
 
-def _refuse_missing(wall: "WallSection", key: str, needs: tuple[str, ...]) -> None:
+def _refuse_missing(wall: WallSection, key: str, needs: tuple[str, ...]) -> None:
     for one in needs:
         if getattr(wall, one) is None:
             text = f"missing; shape '{wall.shape}' needs {', '.join(needs)}"

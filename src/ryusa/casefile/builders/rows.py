@@ -1,19 +1,15 @@
 """Rows of `ryusa check` about the wall that builder 'fill' fills."""
 
-from typing import TYPE_CHECKING
-
 from ryusa.casefile.builders.inside import enclosure_of
 from ryusa.casefile.builders.schema import FillSection
 from ryusa.casefile.builders.values import fill_count, fill_inside, fill_most
-from ryusa.casefile.grains import laid_mean_cube
+from ryusa.casefile.case import Case
+from ryusa.casefile.grains.values import laid_mean_cube
 from ryusa.casefile.rows import ExplainRow, count, number
 from ryusa.model.enclosure import MeshInside
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def fill_rows(case: "Case") -> list[ExplainRow]:
+def fill_rows(case: Case) -> list[ExplainRow]:
     """Volume of the inside of the wall, how many grains fit, and what share they fill at the start."""
     build = case.build
     if not isinstance(build, FillSection) or build.inside is None:

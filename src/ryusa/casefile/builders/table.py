@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.builders.schema import BedOfRunSection, RunSection, TableSection
+from ryusa.casefile.case import Case
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
@@ -23,14 +24,13 @@ from ryusa.model.arrays import Bools, Floats
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
     from ryusa.results import Results
 
 _SAME = 1e-9  # relative difference of densities that are one
 _LIGHTEST, _HEAVIEST = 1.0, 1.0e5  # densities of a grain [kg/m3]
 
 
-def table_of(case: "Case") -> GrainTable | None:
+def table_of(case: Case) -> GrainTable | None:
     """Read the grains that a case names; None for other builders."""
     if isinstance(case.build, TableSection):
         return _table_of_file(case, case.build)
@@ -40,13 +40,13 @@ def table_of(case: "Case") -> GrainTable | None:
     return None if bed is None else _table_of_run(case, "build.bed.run", bed.run, bed.at)
 
 
-def bed_of_run(case: "Case") -> BedOfRunSection | None:
+def bed_of_run(case: Case) -> BedOfRunSection | None:
     """The run from which builder 'stream' takes its bed; None where it lays one, or none."""
     bed = case.build.bed if case.build.kind == "stream" else None
     return bed if isinstance(bed, BedOfRunSection) else None
 
 
-def key_of(case: "Case") -> str:
+def key_of(case: Case) -> str:
     """Key that names the file or folder of the first grains; "build" for builders that lay them."""
     if isinstance(case.build, TableSection):
         return "build.file"
@@ -55,7 +55,7 @@ def key_of(case: "Case") -> str:
     return "build" if bed_of_run(case) is None else "build.bed.run"
 
 
-def period_of(case: "Case") -> tuple[float, float]:
+def period_of(case: Case) -> tuple[float, float]:
     """Periods in x and y where grains come from a file [m], inf where open: the case's, or the file's."""
     table = table_of(case)
     stated = table.period if table is not None else None
@@ -64,7 +64,7 @@ def period_of(case: "Case") -> tuple[float, float]:
     return (file_x if x is None else x, file_y if y is None else y)
 
 
-def made_of(case: "Case") -> dict[str, str]:
+def made_of(case: Case) -> dict[str, str]:
     """Materials of the first grains by their group in the file."""
     return case.build.made_of if isinstance(case.build, TableSection | RunSection) else {}
 
@@ -74,13 +74,13 @@ def rows_of_material(table: GrainTable, made: dict[str, str], name: str | None) 
     return ~table.fixed & np.array([made.get(group) == name for group in table.group], np.bool_)
 
 
-def area_of_file(case: "Case") -> float | None:
+def area_of_file(case: Case) -> float | None:
     """Area of bed under a column of water [m2], where the file states it: that of a channel between walls."""
     table = table_of(case)
     return table.bed_area if table is not None else None
 
 
-def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
+def _table_of_file(case: Case, build: TableSection) -> GrainTable:
     path = inside(case.folder, "build.file", build.file)
     options = ReadOptions(
         frame=build.frame,
@@ -116,7 +116,7 @@ def _units_not_needed(build: TableSection, table: GrainTable) -> Iterator[str]:
             yield f"build.{key} has no effect: {table.name} states no {what}"
 
 
-def densities_of_file(case: "Case") -> Floats | None:
+def densities_of_file(case: Case) -> Floats | None:
     """Density of each row of a table of grains [kg/m3], by its densities or masses.
 
     None where the table states neither, or that of the case, and where the case has materials.
@@ -141,7 +141,7 @@ def densities_of_file(case: "Case") -> Floats | None:
     return np.where(free, found, case.grains.density)
 
 
-def lightest_in_file(case: "Case") -> "Case":
+def lightest_in_file(case: Case) -> Case:
     """The case with the least density of its free grains, where a table states densities."""
     found = densities_of_file(case)
     if found is None:
@@ -155,7 +155,7 @@ def _read(kind: str, options: ReadOptions, path: Path, name: str, _changed: int,
     return read_grains(path, name, kind, options)
 
 
-def _table_of_run(case: "Case", key: str, name: str, at: float | None) -> GrainTable:
+def _table_of_run(case: Case, key: str, name: str, at: float | None) -> GrainTable:
     """Read the frame nearest to a time [s], or the last; a run folder holds what its own run started from."""
     from ryusa.results import schema
 

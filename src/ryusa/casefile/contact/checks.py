@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import adhesion, is_hertz, timing
 from ryusa.casefile.motion import may_rotate
@@ -11,11 +11,8 @@ from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.laws.families import Adhesion, Arm, ContactTiming, Rolling, Slip
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def check_contact(case: "Case") -> Iterator[CaseError]:
+def check_contact(case: Case) -> Iterator[CaseError]:
     """Find stiffness, friction or damping that is missing, and choices that contradict each other."""
     contact, elastic = case.contact, is_hertz(case)
     if elastic and contact.youngs_modulus is None:
@@ -56,7 +53,7 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
         yield CaseError("contact.cap", "spring", f"must be 'total' (or left out) with slip '{contact.slip}'")
 
 
-def _check_adhesion(case: "Case") -> Iterator[CaseError]:
+def _check_adhesion(case: Case) -> Iterator[CaseError]:
     """Find adhesion without its amount, without an area, or with contacts that begin within steps."""
     contact, chosen = case.contact, adhesion(case)
     for key in chosen.takes:
@@ -78,7 +75,7 @@ def _check_adhesion(case: "Case") -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def check_expected_speed(case: "Case") -> Iterator[CaseError]:
+def check_expected_speed(case: Case) -> Iterator[CaseError]:
     """Find elastic spheres whose contacts have no duration, because nothing makes them fast."""
     if is_hertz(case) and not 0.0 < expected_speed(case)[0] < math.inf:
         yield CaseError(
@@ -89,17 +86,17 @@ def check_expected_speed(case: "Case") -> Iterator[CaseError]:
         )
 
 
-def check_rolling(case: "Case") -> Iterator[CaseError]:
+def check_rolling(case: Case) -> Iterator[CaseError]:
     """Find keys of rolling resistance that are missing or contradict each other."""
     rolling = case.rolling
     if rolling.model != "none":
-        if not may_rotate(case):
+        if not may_rotate(case.motion, case.timeline):
             yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
         if rolling.coefficient == 0.0:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
     if rolling.twisting_coefficient > 0.0:
         key, value = "rolling.twisting_coefficient", rolling.twisting_coefficient
-        if not may_rotate(case):
+        if not may_rotate(case.motion, case.timeline):
             yield CaseError(key, value, "needs motion.rotation = 'free'")
         if case.motion.plane:
             yield CaseError(key, value, "needs motion in space: motion.plane = false")

@@ -1,16 +1,14 @@
 """[contact] with everything that follows from it, as case.json holds it."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import friction, is_hertz, restitution, stiffness, timing
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def resolved_contact(case: "Case") -> dict[str, Any]:
+def resolved_contact(case: Case) -> dict[str, Any]:
     """Keys of [contact] in SI, with what follows from others filled in."""
     found: dict[str, Any] = case.contact.model_dump(mode="json", by_alias=True)
     found["timing"] = timing(case).word

@@ -1,34 +1,23 @@
 """Rows of `ryusa check` about contacts: stiffness, friction, damping."""
 
 import math
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.impact import STABLE
 from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import (
-    PairValues,
-    adhesion,
-    hertz_law,
-    is_hertz,
-    largest_overlap,
-    law_of,
-    parting,
-)
+from ryusa.casefile.contact.values import adhesion, hertz_law, is_hertz, largest_overlap, law_of, parting
+from ryusa.casefile.facts import Derived, PairValues
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
 from ryusa.laws import collision, hertz
 from ryusa.laws.families import Adhesion, Slip
 from ryusa.laws.rolling import torque_of_slipping_disc
 from ryusa.model.contact_law import attraction_of, pull_off_of, rest_overlap_of, sticking_speed_of
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
 FAR_APART = 1.5  # ratio of tangential to normal half period beyond which e_s is not defined
 
 
-def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def contact_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Stiffness and friction."""
     rule, contact = case.contact.stiffness, case.contact
     if is_hertz(case):
@@ -49,7 +38,7 @@ def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     ]
 
 
-def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def _friction_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     angle = math.degrees(math.atan(derived.mu))
     rows = [number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg")]
     if case.contact.cohesion:
@@ -68,7 +57,7 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def _coulomb_row(case: "Case", derived: "Derived") -> ExplainRow:
+def _coulomb_row(case: Case, derived: Derived) -> ExplainRow:
     """Whether the tangential force of a contact can exceed mu N, and by what."""
     rule, cap = Slip.of(case.contact.slip), case.contact.cap
     limit = "c + mu N" if case.contact.cohesion else "mu N"
@@ -90,7 +79,7 @@ def _coulomb_row(case: "Case", derived: "Derived") -> ExplainRow:
     return word("contact", "Coulomb limit", "can be exceeded", f"{origin}; 'total' holds it", "note")
 
 
-def _adhesion_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def _adhesion_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """What adhesion does to a mean grain on a fixed one."""
     if adhesion(case) is Adhesion.NONE:
         return []
@@ -121,7 +110,7 @@ def _adhesion_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def _elastic_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def _elastic_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Moduli of elastic spheres, and the linear springs that stand for them in one kind of impact."""
     law, pair = hertz_law(case), derived.fixed
     speed, _ = expected_speed(case)
@@ -141,7 +130,7 @@ def _elastic_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     ]
 
 
-def _moduli_of_springs(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def _moduli_of_springs(case: Case, derived: Derived) -> list[ExplainRow]:
     """Young's modulus of the elastic spheres that stand for linear springs in one kind of impact."""
     (speed, _), pair, nu = expected_speed(case), derived.fixed, case.contact.poisson_ratio
     if not 0.0 < speed < math.inf:
@@ -158,7 +147,7 @@ def _moduli_of_springs(case: "Case", derived: "Derived") -> list[ExplainRow]:
     ]
 
 
-def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def damping_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Dashpots, the restitution they give and the half period of the tangential spring."""
     by_restitution, ends = not math.isnan(derived.e_n), parting(case)
     normal, shear = "contact.damping, a constant", "contact.shear_damping, a constant"
@@ -185,7 +174,7 @@ def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def _half_period(case: "Case", name: str, pair: PairValues) -> ExplainRow:
+def _half_period(case: Case, name: str, pair: PairValues) -> ExplainRow:
     name = f"tangential half period {name}"
     if math.isinf(pair.t_shear):
         return word("damping", name, "none", "k_s = 0: no tangential spring")

@@ -1,13 +1,14 @@
 """What follows from [contact]: stiffness, friction, damping ratios, and the values of one pair of grains."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.grains import mass
+from ryusa.casefile.facts import PairValues
+from ryusa.casefile.grains.values import mass
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.shape import has_clumps
 from ryusa.laws import collision, hertz
@@ -33,36 +34,16 @@ from ryusa.model.contact_law import (
     step_limits_of,
 )
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 numbers(__name__, Parting.NO_TENSION, Parting.TENSION)
 SHEAR_RATIO = 2.0 / 7.0  # k_s over k_n when the case gives neither
 
 
-@dataclass(frozen=True)
-class PairValues:
-    """Masses, damping and durations of one kind of contact: a grain on a fixed one, or two free grains."""
-
-    m: float  # effective mass, with added mass [kg]
-    m_t: float  # effective mass in the tangential direction [kg]
-    zeta_n: float  # damping ratio [-]
-    zeta_s: float
-    eta_n: float  # dashpots [N s/m]
-    eta_s: float
-    e: float  # normal restitution reached [-]
-    e_s: float  # tangential restitution of the free oscillator [-]
-    t_undamped: float  # Eq. (8) with this mass [s]
-    t_col: float  # time the normal force lasts [s]
-    t_shear: float  # half period of the tangential oscillator [s]; inf without spring
-
-
-def is_hertz(case: "Case") -> bool:
+def is_hertz(case: Case) -> bool:
     """Whether contacts are those of elastic spheres."""
     return ContactForce.of(case.contact.law) is ContactForce.HERTZ_MINDLIN
 
 
-def timing(case: "Case") -> ContactTiming:
+def timing(case: Case) -> ContactTiming:
     """Begin and end of contacts in time."""
     if case.contact.timing is not None:
         return ContactTiming.of(case.contact.timing)
@@ -70,30 +51,30 @@ def timing(case: "Case") -> ContactTiming:
     return ContactTiming.AT_STEPS if at_steps else ContactTiming.EXACT
 
 
-def adhesion(case: "Case") -> Adhesion:
+def adhesion(case: Case) -> Adhesion:
     """Attraction of grains in touch."""
     return Adhesion.of(case.contact.adhesion)
 
 
-def adhesion_amount(case: "Case") -> float:
+def adhesion_amount(case: Case) -> float:
     """Pull-off force [N], work of adhesion [J/m2] or energy density [Pa]; 0 without adhesion."""
     (value,) = [getattr(case.contact, key) for key in adhesion(case).takes] or (None,)
     return value or 0.0
 
 
-def parting(case: "Case") -> str:
+def parting(case: Case) -> str:
     """Word of the case for the end of the normal force."""
     return case.contact.damping_law if is_hertz(case) else case.contact.parting
 
 
-def may_pull(case: "Case") -> bool:
+def may_pull(case: Case) -> bool:
     """Whether the normal dashpot may pull before the overlap ends."""
     if is_hertz(case):
         return DampingLaw.of(case.contact.damping_law) is DampingLaw.TSUJI
     return Parting.of(case.contact.parting) is Parting.TENSION
 
 
-def friction(case: "Case") -> float:
+def friction(case: Case) -> float:
     """Friction coefficient mu = tan(phi) [-]."""
     contact = case.contact
     if contact.friction_angle is not None:
@@ -101,7 +82,7 @@ def friction(case: "Case") -> float:
     return contact.friction if contact.friction is not None else math.nan
 
 
-def friction_at_last(case: "Case") -> float:
+def friction_at_last(case: Case) -> float:
     """Friction coefficient after the last change of the timeline [-]."""
     for change in reversed(case.timeline):
         if change.friction_angle is not None:
@@ -111,7 +92,7 @@ def friction_at_last(case: "Case") -> float:
     return friction(case)
 
 
-def restitution(case: "Case") -> tuple[float, float, float, float]:
+def restitution(case: Case) -> tuple[float, float, float, float]:
     """Normal and tangential restitution given, and the damping ratios that reach them; nan with constants.
 
     The tangential damping ratio is that of a two-sided oscillator whatever contact.parting is.
@@ -130,7 +111,7 @@ def restitution(case: "Case") -> tuple[float, float, float, float]:
     )
 
 
-def stiffness(case: "Case") -> tuple[float, float]:
+def stiffness(case: Case) -> tuple[float, float]:
     """Give k_n and k_s [N/m], as written or as they follow for a mean grain on a fixed one."""
     rule, contact = case.contact.stiffness, case.contact
     if is_hertz(case):
@@ -151,7 +132,7 @@ def stiffness(case: "Case") -> tuple[float, float]:
     return k_n, k_n * (SHEAR_RATIO if contact.shear_ratio is None else contact.shear_ratio)
 
 
-def hertz_law(case: "Case") -> ContactLaw:
+def hertz_law(case: Case) -> ContactLaw:
     """Contact law of a case with elastic spheres; its k_n is that of a mean grain on a fixed one."""
     contact, d = case.contact, sizes(case)[0]
     m, m_added, _, _ = mass(case, d)
@@ -176,7 +157,7 @@ def hertz_law(case: "Case") -> ContactLaw:
     )
 
 
-def law_of(case: "Case") -> ContactLaw:
+def law_of(case: Case) -> ContactLaw:
     """Contact law of a case, as far as estimates need it: springs, damping and adhesion."""
     if is_hertz(case):
         return hertz_law(case)
@@ -203,7 +184,7 @@ def reduced_radius(d: float, free: bool) -> float:
     return 0.25 * d if free else 0.5 * d
 
 
-def shortest_contact(case: "Case", d: float, free: bool) -> float:
+def shortest_contact(case: Case, d: float, free: bool) -> float:
     """Shortest contact of the pair of `pair_values` [s]; of elastic spheres at the expected speed."""
     one = pair_values(case, d, free)
     if is_hertz(case):
@@ -211,7 +192,7 @@ def shortest_contact(case: "Case", d: float, free: bool) -> float:
     return collision.shortest_contact(one.m, stiffness(case)[0], one.zeta_n, may_pull(case))
 
 
-def largest_overlap(case: "Case", speed: float) -> float:
+def largest_overlap(case: Case, speed: float) -> float:
     """Largest overlap of a mean grain that hits a fixed one [m], as it were without adhesion."""
     d = sizes(case)[0]
     one = pair_values(case, d, False)
@@ -221,7 +202,7 @@ def largest_overlap(case: "Case", speed: float) -> float:
     return collision.overlap_max(speed, one.m, stiffness(case)[0], one.zeta_n)
 
 
-def overlap_under(case: "Case", load: float) -> float:
+def overlap_under(case: Case, load: float) -> float:
     """Overlap of a mean grain on a fixed one under a load [N] at rest, with adhesion [m]."""
     if adhesion(case) is not Adhesion.NONE:
         return rest_overlap_of(law_of(case), 0.25 * sizes(case)[0], load)
@@ -230,19 +211,19 @@ def overlap_under(case: "Case", load: float) -> float:
     return load / stiffness(case)[0]
 
 
-def step_limit(case: "Case", d: float, free: bool) -> tuple[float, float]:
+def step_limit(case: Case, d: float, free: bool) -> tuple[float, float]:
     """Largest stable step [s] of the normal and of the tangential motion of the pair of `pair_values`."""
     if is_hertz(case):
-        one = pair_values(case, d, free, may_rotate(case))
+        one = pair_values(case, d, free, may_rotate(case.motion, case.timeline))
         return step_limits_of(hertz_law(case), one.m, one.m_t, reduced_radius(d, free))
-    (k_n, k_s), one = stiffness(case), pair_values(case, d, free, may_rotate(case))
+    (k_n, k_s), one = stiffness(case), pair_values(case, d, free, may_rotate(case.motion, case.timeline))
     normal = collision.step_limit(one.zeta_n, collision.omega_natural(k_n, one.m))
     if k_s > 0.0:
         return normal, collision.step_limit(one.zeta_s, collision.omega_natural(k_s, one.m_t))
     return normal, 2.0 * one.m_t / one.eta_s if one.eta_s > 0.0 else math.inf
 
 
-def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None) -> PairValues:
+def pair_values(case: Case, d: float, free: bool, rotates: bool | None = None) -> PairValues:
     """Values of a grain of diameter d [m] on a fixed one, or of two such grains when `free`.
 
     `rotates` stands for motion.rotation, which applies when it is not given.
@@ -282,7 +263,7 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
     )
 
 
-def _pair_values_hertz(case: "Case", r: float, m: float, m_t: float) -> PairValues:
+def _pair_values_hertz(case: Case, r: float, m: float, m_t: float) -> PairValues:
     """Values of two elastic spheres of a reduced radius r [m]: all in an impact at the expected speed.
 
     Dashpots and the tangential oscillation are those at the largest overlap.

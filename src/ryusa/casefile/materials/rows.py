@@ -1,20 +1,16 @@
 """What `ryusa check` says of materials and their contacts."""
 
-from typing import TYPE_CHECKING
-
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness
-from ryusa.casefile.material_sizes import size_rows
-from ryusa.casefile.materials import GRAINS, case_of_pair, density, meeting
+from ryusa.casefile.materials.sizes import size_rows
+from ryusa.casefile.materials.values import GRAINS, case_of_pair, density, meeting
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.casefile.section import given
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 _ADHESION_UNITS = {"pull_off_force": "N", "work_of_adhesion": "J/m2", "adhesion_density": "J/m3"}
 
 
-def material_rows(case: "Case") -> list[ExplainRow]:
+def material_rows(case: Case) -> list[ExplainRow]:
     """Contacts of each two materials that meet."""
     rows: list[ExplainRow] = []
     for name in case.materials:
