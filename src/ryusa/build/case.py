@@ -140,7 +140,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
 def _built(case: Case, found: Derived) -> Built:
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
-    key = key_of(case)
+    key = key_of(case.build)
     reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
     refuse_overlaps(reach, key, case.motion.plane)
     walls = (*walls_of(case), *stream_walls(case))
@@ -206,7 +206,7 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
     """The same scene with the materials of a case, `of` by id without faces; as it is where there is one."""
     if not len(of):
         return scene
-    names, walls = names_of(case), scene.walls
+    names, walls = names_of(case.materials), scene.walls
     if walls is not None:
         of_case = [names.index(one.material or GRAINS) for one in case.walls]
         others = walls.names[len(of_case) :]  # bottom and dams of a stream
@@ -222,7 +222,7 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
 def contact_of(case: Case, derived: Derived) -> ContactLaw:
     """Contact law of a case."""
     found, contact = derived, case.contact
-    if is_hertz(case):
+    if is_hertz(case.contact):
         return hertz_law(case)
     constants = math.isnan(found.e_n)
     return ContactLaw(
@@ -239,10 +239,10 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         eta_s=found.fixed.eta_s if constants else 0.0,
         slip=Slip.of(contact.slip),
         cap=chosen(case, Cap),
-        tension=may_pull(case),
+        tension=may_pull(case.contact),
         timing=timing(case),
-        adhesion=adhesion(case),
-        adhesion_amount=adhesion_amount(case),
+        adhesion=adhesion(case.contact),
+        adhesion_amount=adhesion_amount(case.contact),
     )
 
 
@@ -275,7 +275,7 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
         nu=water.viscosity,
         rho_w=water.density,
         drag=Drag.of(water.drag),
-        drag_of_form=DragOfForm.of(water.drag_of_form) if has_clumps(case) else DragOfForm.SPHERE,
+        drag_of_form=DragOfForm.of(water.drag_of_form) if has_clumps(case.grains) else DragOfForm.SPHERE,
         c_d=water.drag_coefficient,
         a_2=water.shape_area,
         c_m=water.added_mass,
@@ -311,7 +311,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if water.roughness is None and case.column.bed == "rough":
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
         return (*notes, *_column_notes(case))
-    elastic = is_hertz(case)
+    elastic = is_hertz(case.contact)
     if elastic:
         notes += _elastic_notes(case)
     elif contact.shear_ratio is None and contact.shear_stiffness is None:

@@ -35,7 +35,7 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
     assert width is not None
     points, ends = bottom_points(case), _ends(case, keys, width)
     period = (math.inf, math.inf if keys.walls else width)
-    if (bed := bed_of_run(case)) is not None:
+    if (bed := bed_of_run(case.build)) is not None:
         return replace(first_grains(case, bed.run, True), walls=ends, period=period)
     rng = np.random.default_rng(case.seed)
     n = stream_count(case)

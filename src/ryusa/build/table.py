@@ -39,7 +39,7 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
     """
     grid = table_of(case)
     assert grid is not None
-    key = key_of(case)
+    key = key_of(case.build)
     if case.motion.plane:
         for name in ("vy", "wx", "wz"):
             if np.any(grid.column(name)):

@@ -257,7 +257,7 @@ def walls_of(case: Case) -> tuple[SolidWall, ...]:
 def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
     at = wall.at or (0.0, 0.0, 0.0)
     if wall.shape == "mesh":
-        made = triangles(wall.name, mesh_of(case, wall, key).corners)
+        made = triangles(wall.name, mesh_of(case.folder, wall, key).corners)
     elif wall.sides is not None and wall.number is not None:
         made = ridges(wall.name, at, *wall.sides, wall.number, wall.height or 0.0)
     elif wall.sides is not None:

@@ -68,7 +68,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *_rivals(case),
         *check_choices(case),
         *check_contact(case),
-        *check_stop(case),
+        *check_stop(case.stop, case.build),
         *check_water(case),
         *check_column(case),
         *check_row(case),
@@ -80,7 +80,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_walls(case),
         *check_builder(case),
         *check_traffic(case),
-        *check_timeline(case, data),
+        *check_timeline(case.timeline, case.stop, data),
         *check_materials(case),
         *check_precision(case),
     ]

@@ -45,7 +45,7 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     ),
 }
 _ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind
-    DragOfForm: lambda case: has_clumps(case) and case.water is not None and case.water.drag != "none"
+    DragOfForm: lambda case: has_clumps(case.grains) and case.water is not None and case.water.drag != "none"
 }
 _ONLY_WITH: dict[type[Family], str] = {Above: "depth", SideWalls: "side_walls"}  # another key of the section
 

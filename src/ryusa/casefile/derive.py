@@ -32,7 +32,7 @@ def derive(case: Case) -> Derived:
     d, d_min, d_max = sizes(case)
     m, m_added, m_weight, inertia = mass(case, d)
     k_n, k_s = stiffness(case)
-    e_n, e_s, _, _ = restitution(case)
+    e_n, e_s, _, _ = restitution(case.contact)
     n_grain, n_fixed, meet = counts(case)
     pairs = [
         (lightest_of(case, a, b, both), smallest_of(case, a, b), both)
@@ -40,7 +40,7 @@ def derive(case: Case) -> Derived:
     ]
     pairs = pairs if case.materials else [(lightest_in_file(case), d_min, meet)]
     lighter = least_mass(case)
-    power = 0.4 if is_hertz(case) else 0.5  # of the mass in the duration of a contact
+    power = 0.4 if is_hertz(case.contact) else 0.5  # of the mass in the duration of a contact
     shortest = lighter**power * min(shortest_contact(one, d, both) for one, d, both in pairs)
     steps = [step_limit(one, d, both) for one, d, both in pairs]
     slower = math.sqrt(lighter)
@@ -82,7 +82,7 @@ def derive(case: Case) -> Derived:
         slope=slope(case.motion),
         k_n=k_n,
         k_s=k_s,
-        mu=friction(case),
+        mu=friction(case.contact),
         e_n=e_n,
         e_s=e_s,
         fixed=pair_values(case, d, False),

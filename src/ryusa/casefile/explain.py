@@ -41,7 +41,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *shape_rows(case, found),
         *traffic_rows(case),
         *contact_rows(case, found),
-        *damping_rows(case, found),
+        *damping_rows(case.contact, case.motion, found),
         *material_rows(case),
         *wall_rows(case, found),
         *fill_rows(case),

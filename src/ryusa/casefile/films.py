@@ -98,7 +98,7 @@ def step_limits(case: Case, k_n: float, d_min: float, meet: bool) -> tuple[float
     m = sum(mass(case, d_min)[:2])
     rebound = film = math.inf
     if wet.rebound != "dry":
-        zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case))
+        zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case.contact))
         rebound = collision.step_limit(zeta, collision.omega_natural(k_n, 0.5 * m if meet else m))
     if wet.film != "none" and wet.asperity is not None:
         film = wet.asperity * immersed.stokes_number(1.0, m, 0.5 * d_min, wet.density, wet.viscosity)
@@ -119,7 +119,7 @@ def film_rows(case: Case, derived: Derived) -> list[ExplainRow]:
             number("water", "Stokes number", st, "-", "of an impact on a wall at the settling velocity")
         )
         if wet.rebound != "dry":
-            e = restitution(case)[0]
+            e = restitution(case.contact)[0]
             e = evaluate(
                 Rebound.of(wet.rebound), e_dry=e, st=st, st_c=wet.rebound_stokes,
                 roughness=wet.asperity or math.nan, d=derived.d,

@@ -10,6 +10,7 @@ import numpy as np
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.files import contents, inside
+from ryusa.casefile.grains.schema import FormSection, GrainsSection
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.errors import CaseError
 from ryusa.formats.mesh import KINDS, read_mesh
@@ -21,12 +22,12 @@ SPHERES = 12  # at most, where the case does not say
 Spheres = tuple[tuple[float, float, float, float], ...]
 
 
-def check_forms(case: Case) -> Iterator[CaseError]:
+def check_forms(grains: GrainsSection, shapes: dict[str, FormSection]) -> Iterator[CaseError]:
     """Find shapes that are neither a mesh nor ratios, names that are taken, and shapes without use."""
-    given = case.grains.shape
+    given = grains.shape
     used = {given} if isinstance(given, str) else set(given)
-    unknown = {one for one in used if one not in SHAPES and one not in case.shapes and not _is_table(one)}
-    for name, form in case.shapes.items():
+    unknown = {one for one in used if one not in SHAPES and one not in shapes and not _is_table(one)}
+    for name, form in shapes.items():
         key = f"shapes.{name}"
         if name in SHAPES or _is_table(name):
             yield CaseError(

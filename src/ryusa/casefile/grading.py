@@ -8,6 +8,7 @@ from pathlib import Path
 from ryusa.casefile.case import Case
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.files import contents, inside
+from ryusa.casefile.grains.schema import GrainsSection
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
 from ryusa.formats.sieve import read_sieve_curve
@@ -184,7 +185,8 @@ def grading_rows(case: Case, derived: Derived) -> list[ExplainRow]:
         number("grains", "sorting", grading.sorting, "-", "geometric standard deviation sqrt(D84/D16)"),
         number("grains", "mean by number", grading.mean_diameter, "cm", "fine grains are most in number"),
     ]
-    return [*rows, *_cut_rows(case, whole, grading), *_laid_rows(derived, grading), _cost(derived, grading)]
+    cut = _cut_rows(case.grains, whole, grading)
+    return [*rows, *cut, *_laid_rows(derived, grading), _cost(derived, grading)]
 
 
 def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
@@ -198,23 +200,23 @@ def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
     return number("grains", f"D{round(100 * share)}", laid, "cm", origin, flag)
 
 
-def _cut_rows(case: Case, whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
+def _cut_rows(grains: GrainsSection, whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
     """What truncation leaves out, and what it would have cost.
 
     The shortest contact is one of the finest grains, and a cell of the search for neighbours is as wide as
     the largest grain and a little more.
     """
-    low, high = case.grains.finest, case.grains.coarsest
+    low, high = grains.finest, grains.coarsest
     if low is not None and (share := whole.share_below(low)) > 0.0:
         without = "how small they are the curve does not say"
         if whole.finer[0] == 0.0:
             kept = (whole.share_below(high) if high else 1.0) - share
             open_cut = whole.cut(0.0, high or math.inf)
             steps = (float(grading.d[0]) / float(open_cut.d[0])) ** DURATION
-            grains = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
+            more = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
             without = (
                 f"with them, down to {1e3 * float(open_cut.d[0]):.3g} mm, {_times(steps)} as many steps and "
-                f"{_times(grains)} as many grains for the same mass of the others"
+                f"{_times(more)} as many grains for the same mass of the others"
             )
         yield _share("mass finer than finest, left out", share, f"grains.finest; {without}")
     if high is not None and (share := 1.0 - whole.share_below(high)) > 0.0:
@@ -223,10 +225,10 @@ def _cut_rows(case: Case, whole: Grading, grading: Grading) -> Iterator[ExplainR
             kept = 1.0 - share - (whole.share_below(low) if low else 0.0)
             open_cut = whole.cut(low or 0.0)
             wider = float(open_cut.d[-1]) / float(grading.d[-1])
-            grains = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
+            more = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
             without = (
                 f"with them, up to {1e3 * float(open_cut.d[-1]):.3g} mm, no more steps at the same "
-                f"stiffness, as the finest grains set the step; {_times(grains)} as many grains for the same "
+                f"stiffness, as the finest grains set the step; {_times(more)} as many grains for the same "
                 f"mass of the others, and cells of the search for neighbours {_times(wider)} as wide"
             )
         yield _share("mass coarser than coarsest, left out", share, f"grains.coarsest; {without}")

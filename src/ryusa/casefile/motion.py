@@ -7,13 +7,12 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ryusa.casefile.quantities import Acceleration, Boolean, PositiveLength, Slope, SlopeAngle
-from ryusa.casefile.record.schema import ChangeSection
+from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
 
 RIVALS = (("slope", "slope_angle"),)
 STEEPEST = 1.0  # tangent, beyond which a slope is given as an angle
-Timeline = tuple[ChangeSection, ...]
 
 
 class MotionSection(Section):

@@ -9,7 +9,9 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.forms import check_forms, clump_of_form, form_rows, spheres_of_form
+from ryusa.casefile.grains.schema import FormSection, GrainsSection
 from ryusa.casefile.rows import ExplainRow, count, number, word
+from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
 from ryusa.formats.clump import read_clump
 from ryusa.model.clump import SHAPES, Clump, shape
@@ -47,11 +49,11 @@ def shapes_of(case: Case) -> tuple[Shape, ...]:
     return tuple(found)
 
 
-def clump_files(case: Case) -> list[str]:
+def clump_files(grains: GrainsSection, shapes: dict[str, FormSection]) -> list[str]:
     """Names of the files that `grains.shape` and [shapes] give."""
-    given = case.grains.shape
+    given = grains.shape
     tables = [name for name in ([given] if isinstance(given, str) else given) if _is_file(name)]
-    return tables + [form.file for form in case.shapes.values() if form.file is not None]
+    return tables + [form.file for form in shapes.values() if form.file is not None]
 
 
 def spheres_of(case: Case, name: str) -> list[list[float]]:
@@ -59,9 +61,9 @@ def spheres_of(case: Case, name: str) -> list[list[float]]:
     return [list(one) for one in spheres_of_form(case, name)]
 
 
-def has_clumps(case: Case) -> bool:
+def has_clumps(grains: GrainsSection) -> bool:
     """Whether some grains are clumps; their file need not be there."""
-    given = case.grains.shape
+    given = grains.shape
     return any(name != SPHERE for name in ([given] if isinstance(given, str) else given))
 
 
@@ -83,10 +85,10 @@ def spheres_per_grain(case: Case) -> float:
 def check_shape(case: Case) -> Iterator[CaseError]:
     """Find shapes that are unknown, and cases that cannot have clumps."""
     given = case.grains.shape
-    if faults := list(check_forms(case)):
+    if faults := list(check_forms(case.grains, case.shapes)):
         yield from faults
         return
-    if not has_clumps(case) and isinstance(given, str):
+    if not has_clumps(case.grains) and isinstance(given, str):
         return
     try:
         shapes_of(case)
@@ -95,13 +97,13 @@ def check_shape(case: Case) -> Iterator[CaseError]:
         return
     if not isinstance(given, str) and (total := sum(given.values())) > 1.0 + WHOLE:
         yield CaseError(KEY, None, f"the shares add up to {total:g}: at most 1, the rest are spheres")
-    if not has_clumps(case):
+    if not has_clumps(case.grains):
         return
     if case.motion.plane:
         yield CaseError(KEY, None, "needs motion in space: motion.plane = false")
     if case.motion.rotation != "free":
         yield CaseError(KEY, None, "needs motion.rotation = 'free'")
-    yield from _check_water(case)
+    yield from _check_water(case.water)
     if case.stop.precision is not None:
         yield CaseError("stop.precision", None, "cannot end a run with clumps; give stop.time")
     if case.build.kind not in BUILDERS:
@@ -110,9 +112,8 @@ def check_shape(case: Case) -> Iterator[CaseError]:
         yield CaseError("grains.shape_volume", case.grains.shape_volume, f"excludes {KEY}")
 
 
-def _check_water(case: Case) -> Iterator[CaseError]:
+def _check_water(water: WaterSection | None) -> Iterator[CaseError]:
     """Find keys of the water that clumps exclude."""
-    water = case.water
     if water is None:
         return
     for key in ("rebound", "film"):

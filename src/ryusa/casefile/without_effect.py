@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ryusa.casefile.builders.schema import (
+    BuildSection,
     DropSection,
     EmptySection,
     FillSection,
@@ -24,15 +25,19 @@ from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import counts, drawn_materials, fill_count
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import restitution, stiffness
+from ryusa.casefile.feeds.schema import FeedSection
 from ryusa.casefile.grains.schema import spread_of
 from ryusa.casefile.grains.values import has_own_sizes, laid_shares
 from ryusa.casefile.materials.values import GRAINS, meeting
-from ryusa.casefile.motion import slope
+from ryusa.casefile.motion import MotionSection, slope
+from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.ends import hydrograph_points
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps, spheres_of
+from ryusa.casefile.walls.schema import WallSection
+from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
 from ryusa.laws.families import Drag, Lift
 
@@ -54,23 +59,22 @@ _TANGENTIAL = (
 
 def check_without_effect(case: Case) -> Found:
     """Find keys that cannot act, where who wrote them would think that they do."""
-    yield from _builder(case)
-    yield from _walls(case)
-    yield from _traffic(case)
+    yield from _builder(case.build, case.motion)
+    yield from _walls(case.walls, case.timeline)
+    yield from _traffic(case.feeds)
     if water_alone(case):
         for k, plane in enumerate(case.planes):
             text = "has no effect on water, and there are no grains; what stands in it is [[water.row.dams]]"
             yield CaseError(f"planes.{k}", plane.name, text)
     else:
         yield from _grains(case)
-        yield from _motion(case)
-        yield from _water(case)
+        yield from _motion(case.motion, case.timeline)
+        yield from _water(case.water)
         yield from _record(case)
 
 
-def _builder(case: Case) -> Found:
-    build = case.build
-    if isinstance(build, FlumeSection) and case.motion.plane and given(build, "walls"):
+def _builder(build: BuildSection, motion: MotionSection) -> Found:
+    if isinstance(build, FlumeSection) and motion.plane and given(build, "walls"):
         text = "has no effect in a plane scene, which has no side walls"
         yield CaseError("build.walls", build.walls, text)
     if isinstance(build, DropSection) and build.copies == 1 and given(build, "height_step"):
@@ -81,17 +85,17 @@ def _builder(case: Case) -> Found:
         yield CaseError("build.mass_unit", build.mass_unit, text)
 
 
-def _walls(case: Case) -> Found:
-    moved: list[tuple[str, Any]] = [(f"walls.{k}", wall) for k, wall in enumerate(case.walls)]
-    moved += [(f"timeline.{k}.move", one.move) for k, one in enumerate(case.timeline) if one.move is not None]
+def _walls(walls: tuple[WallSection, ...], timeline: Timeline) -> Found:
+    moved: list[tuple[str, Any]] = [(f"walls.{k}", wall) for k, wall in enumerate(walls)]
+    moved += [(f"timeline.{k}.move", one.move) for k, one in enumerate(timeline) if one.move is not None]
     for key, one in moved:
         if given(one, "phase") and one.amplitude is None and one.frequency is None:
             text = "has no effect without an oscillation: amplitude and frequency"
             yield CaseError(f"{key}.phase", one.phase, text)
 
 
-def _traffic(case: Case) -> Found:
-    for k, feed in enumerate(case.feeds):
+def _traffic(feeds: tuple[FeedSection, ...]) -> Found:
+    for k, feed in enumerate(feeds):
         key = f"feeds.{k}"
         if feed.low is not None and given(feed, "normal"):
             yield CaseError(f"{key}.normal", list(feed.normal), "has no effect in a box; it is for a disc")
@@ -109,7 +113,7 @@ def _grains(case: Case) -> Found:
     if GRAINS in grains.mixture:
         text = "is the material of the rest of the grains: leave it out, and give the shares of others"
         yield CaseError(f"grains.mixture.{GRAINS}", grains.mixture[GRAINS], text)
-    elif grains.mixture and table_of(case) is None and not laid_shares(case):
+    elif grains.mixture and table_of(case) is None and not laid_shares(case.grains, case.build):
         text = f"has no effect: builder '{case.build.kind}' lays no grain here; give feeds a material"
         yield CaseError("grains.mixture", None, text)
     if grains.bed_material is not None and not _sets_a_bed(case):
@@ -120,7 +124,7 @@ def _grains(case: Case) -> Found:
 def _draws_sizes_of_grains(case: Case) -> bool:
     """Whether some grain has the distribution of [grains], or that of a material which takes it over."""
     for name in drawn_materials(case):
-        if name is None or not has_own_sizes(case, name):
+        if name is None or not has_own_sizes(case.materials, name):
             return True
         own = case.materials[name]
         if own.sieve_curve is None and own.spread is None:
@@ -168,20 +172,20 @@ _OF_CONTACT = (
 )  # fmt: skip
 
 
-def _motion(case: Case) -> Found:
-    if case.motion.gravity == 0.0:
+def _motion(motion: MotionSection, timeline: Timeline) -> Found:
+    if motion.gravity == 0.0:
         for key in ("slope", "slope_angle"):
-            value = getattr(case.motion, key)
+            value = getattr(motion, key)
             if value is not None and value != 0.0:
                 yield CaseError(f"motion.{key}", value, "has no effect without gravity: motion.gravity is 0")
-            for k, one in enumerate(case.timeline):
+            for k, one in enumerate(timeline):
                 if getattr(one, key) is not None:
                     text = "has no effect without gravity: motion.gravity is 0"
                     yield CaseError(f"timeline.{k}.{key}", getattr(one, key), text)
 
 
-def _water(case: Case) -> Found:
-    wet = case.water
+def _water(water: WaterSection | None) -> Found:
+    wet = water
     if wet is None:
         return
     if given(wet, "shape_area") and Drag.of(wet.drag) is Drag.NONE and Lift.of(wet.lift) is Lift.NONE:
@@ -274,7 +278,7 @@ def _acts_on_water(case: Case, key: str) -> bool:
 def _draws(case: Case) -> bool:
     """Whether anything is drawn at random."""
     wet = case.water
-    if case.feeds or has_clumps(case) or case.grains.mixture:
+    if case.feeds or has_clumps(case.grains) or case.grains.mixture:
         return True
     if wet is not None and wet.column is not None and wet.column.fluctuations != "none":
         return True
@@ -302,7 +306,7 @@ def _of_contacts(case: Case) -> Iterator[str]:
             if given(contact, key):
                 yield f"contact.{key} has no effect: there is no normal dashpot"
     if stiffness(case)[1] == 0.0:
-        shear = given(contact, "restitution_shear") and restitution(case)[1] != 1.0
+        shear = given(contact, "restitution_shear") and restitution(case.contact)[1] != 1.0
         if shear:
             yield "contact.restitution_shear has no effect: there is no tangential spring"
 

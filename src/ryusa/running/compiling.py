@@ -100,7 +100,9 @@ def compiling_row(case: "Case") -> ExplainRow:
     """Row of `ryusa check` of the time that compiling takes at most."""
     row = case.row is not None
     column = case.water is not None and case.water.profile == "column"
-    expected = expected_of(grains=not water_alone(case), clumps=has_clumps(case), column=column, row=row)
+    expected = expected_of(
+        grains=not water_alone(case), clumps=has_clumps(case.grains), column=column, row=row
+    )
     seconds = waiting.at_most(expected)
     origin = "before the first step, once for this kind of case: what is kept of earlier runs takes none"
     return ExplainRow("cost", "compiling", seconds, "s", f"up to {_round(seconds)} s", origin)

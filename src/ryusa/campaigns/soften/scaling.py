@@ -50,7 +50,7 @@ def refuse_if_not_softenable(case: "Case") -> None:
             KEY, run, "cannot be softened: its reach has the stiffness of the case, and softer grains need a "
             "reach of their own",
         )  # fmt: skip
-    bed = bed_of_run(case)
+    bed = bed_of_run(case.build)
     if isinstance(case.build, FromFile) or bed is not None:
         key, value = ("build.kind", case.build.kind) if bed is None else ("build.bed.run", bed.run)
         raise CaseError(

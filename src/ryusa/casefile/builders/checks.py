@@ -83,7 +83,7 @@ def check_builder(case: Case) -> Iterator[CaseError]:
             if given(build, key) and build.format not in formats:
                 allowed = f"has no effect with format '{build.format}', only with {', '.join(formats)}"
                 yield CaseError(f"build.{key}", getattr(build, key), allowed)
-    if made_of(case):
+    if made_of(case.build):
         yield from _made_of(case)
     if isinstance(build, FlumeSection):
         yield from _flume(case, build)
@@ -99,7 +99,7 @@ def _made_of(case: Case) -> Iterator[CaseError]:
     table = table_of(case)
     assert table is not None
     there = sorted({one for one, fixed in zip(table.group, table.fixed, strict=True) if one and not fixed})
-    for group in made_of(case):
+    for group in made_of(case.build):
         if group not in there:
             text = f"is no group of free grains of {table.name}, which has {', '.join(there) or 'none'}"
             yield CaseError(f"build.made_of.{group}", None, text, nearest_word(group, there))
@@ -303,4 +303,4 @@ def _against_file(case: Case) -> Iterator[CaseError]:
                 f"domain.{key}", given, f"differs from {table.name}, which is {there}; leave it out"
             )
     if case.motion.plane and math.isfinite(table.period[1]):
-        yield CaseError(key_of(case), table.name, "is periodic in y, which a plane scene cannot be")
+        yield CaseError(key_of(case.build), table.name, "is periodic in y, which a plane scene cannot be")

@@ -66,7 +66,7 @@ def enclosure_of(case: Case) -> Enclosure:
         raise CaseError("build.inside", wall.name, text.replace("a ridges", "a plate with ridges"))
     _refuse_missing(wall, key, ("file", "unit"))
     try:
-        return _inside_of_mesh(mesh_of(case, wall, key))
+        return _inside_of_mesh(mesh_of(case.folder, wall, key))
     except MeshFault as error:
         raise CaseError("build.inside", wall.name, f"{error}; {_REMEDY}, or mend the mesh") from None
 

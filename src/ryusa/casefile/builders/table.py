@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders.schema import BedOfRunSection, RunSection, TableSection
+from ryusa.casefile.builders.schema import BedOfRunSection, BuildSection, RunSection, TableSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
@@ -35,24 +35,24 @@ def table_of(case: Case) -> GrainTable | None:
     if isinstance(case.build, TableSection):
         return _table_of_file(case, case.build)
     if isinstance(case.build, RunSection):
-        return _table_of_run(case, "build.folder", case.build.folder, case.build.at)
-    bed = bed_of_run(case)
-    return None if bed is None else _table_of_run(case, "build.bed.run", bed.run, bed.at)
+        return _table_of_run(case.folder, "build.folder", case.build.folder, case.build.at)
+    bed = bed_of_run(case.build)
+    return None if bed is None else _table_of_run(case.folder, "build.bed.run", bed.run, bed.at)
 
 
-def bed_of_run(case: Case) -> BedOfRunSection | None:
+def bed_of_run(build: BuildSection) -> BedOfRunSection | None:
     """The run from which builder 'stream' takes its bed; None where it lays one, or none."""
-    bed = case.build.bed if case.build.kind == "stream" else None
+    bed = build.bed if build.kind == "stream" else None
     return bed if isinstance(bed, BedOfRunSection) else None
 
 
-def key_of(case: Case) -> str:
+def key_of(build: BuildSection) -> str:
     """Key that names the file or folder of the first grains; "build" for builders that lay them."""
-    if isinstance(case.build, TableSection):
+    if isinstance(build, TableSection):
         return "build.file"
-    if isinstance(case.build, RunSection):
+    if isinstance(build, RunSection):
         return "build.folder"
-    return "build" if bed_of_run(case) is None else "build.bed.run"
+    return "build" if bed_of_run(build) is None else "build.bed.run"
 
 
 def period_of(case: Case) -> tuple[float, float]:
@@ -64,9 +64,9 @@ def period_of(case: Case) -> tuple[float, float]:
     return (file_x if x is None else x, file_y if y is None else y)
 
 
-def made_of(case: Case) -> dict[str, str]:
+def made_of(build: BuildSection) -> dict[str, str]:
     """Materials of the first grains by their group in the file."""
-    return case.build.made_of if isinstance(case.build, TableSection | RunSection) else {}
+    return build.made_of if isinstance(build, TableSection | RunSection) else {}
 
 
 def rows_of_material(table: GrainTable, made: dict[str, str], name: str | None) -> Bools:
@@ -155,14 +155,14 @@ def _read(kind: str, options: ReadOptions, path: Path, name: str, _changed: int,
     return read_grains(path, name, kind, options)
 
 
-def _table_of_run(case: Case, key: str, name: str, at: float | None) -> GrainTable:
+def _table_of_run(folder: Path, key: str, name: str, at: float | None) -> GrainTable:
     """Read the frame nearest to a time [s], or the last; a run folder holds what its own run started from."""
     from ryusa.results import schema
 
-    folder, path = case.folder, inside(case.folder, key, name)
+    path = inside(folder, key, name)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
-        return contents(case.folder, key, schema.START, start, partial(_read, "csv", ReadOptions()))
+        return contents(folder, key, schema.START, start, partial(_read, "csv", ReadOptions()))
     try:
         changed = (path / schema.PARTS).stat().st_mtime_ns
     except OSError:

@@ -52,7 +52,7 @@ def sizes(case: Case) -> tuple[float, float, float]:
 
 def drawn_materials(case: Case) -> set[str | None]:
     """Materials of which the builder or a feed draws the sizes; None is that of [grains]."""
-    laid = set(laid_shares(case)) if table_of(case) is None else set[str | None]()
+    laid = set(laid_shares(case.grains, case.build)) if table_of(case) is None else set[str | None]()
     fed = {feed.material for feed in case.feeds if feed.brings}
     return laid | fed or ({None} if table_of(case) is None else set[str | None]())
 
@@ -62,7 +62,7 @@ def size_range(case: Case, name: str | None) -> tuple[float, float]:
     table = table_of(case)
     if table is None:
         return drawn_range(case, name)
-    there = table.column("d")[rows_of_material(table, made_of(case), name)]
+    there = table.column("d")[rows_of_material(table, made_of(case.build), name)]
     ranges = [(float(there.min()), float(there.max()))] if len(there) else []
     if not ranges or name in {feed.material for feed in case.feeds if feed.brings}:
         ranges.append(drawn_range(case, name))
@@ -258,7 +258,7 @@ def fill_most(case: Case) -> int:
     cells = len(fill_inside(case).numbers) if inside else math.prod(fill_cells(case))
     if not graded(case):
         return cells
-    laid = laid_shares(case)
+    laid = laid_shares(case.grains, case.build)
     each = sum(share * _cells_of_a_grain(case, name) for name, share in laid.items())
     return max(cells, int((cells - _ROUNDED * len(laid)) / each))
 

@@ -170,7 +170,7 @@ def _flow(case: Case, derived: Derived, keys: ColumnSection) -> list[ExplainRow]
     rows.append(number("water", "Rouse number", rouse, "-", "settling velocity over kappa u_star"))
     excess = case.grains.density / wet.density - 1.0
     d_star = transport.d_star(excess, derived.g, derived.d, wet.viscosity)
-    repose = math.atan(friction_at_last(case))
+    repose = math.atan(friction_at_last(case.contact, case.timeline))
     layer = transport.bedload_layer(
         derived.tau_star, slope_at_last(case.motion, case.timeline), repose, C_S, ALPHA
     )

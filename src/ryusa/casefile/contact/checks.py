@@ -14,7 +14,7 @@ from ryusa.laws.families import Adhesion, Arm, ContactTiming, Rolling, Slip
 
 def check_contact(case: Case) -> Iterator[CaseError]:
     """Find stiffness, friction or damping that is missing, and choices that contradict each other."""
-    contact, elastic = case.contact, is_hertz(case)
+    contact, elastic = case.contact, is_hertz(case.contact)
     if elastic and contact.youngs_modulus is None:
         yield CaseError("contact.youngs_modulus", None, f"missing; law '{contact.law}' needs it")
     if not elastic and contact.stiffness is None:
@@ -31,7 +31,7 @@ def check_contact(case: Case) -> Iterator[CaseError]:
             f"must be 'at steps' (or left out) with law '{contact.law}', whose contacts cannot begin and end "
             "within steps (design/0018)",
         )
-    if has_clumps(case) and timing(case) is not ContactTiming.AT_STEPS:
+    if has_clumps(case.grains) and timing(case) is not ContactTiming.AT_STEPS:
         allowed = "must be 'at steps' (or left out) with clumps: within a step, contacts would be those of "
         yield CaseError("contact.timing", contact.timing, allowed + "spheres (design/0022)")
     yield from _check_adhesion(case)
@@ -55,19 +55,20 @@ def check_contact(case: Case) -> Iterator[CaseError]:
 
 def _check_adhesion(case: Case) -> Iterator[CaseError]:
     """Find adhesion without its amount, without an area, or with contacts that begin within steps."""
-    contact, chosen = case.contact, adhesion(case)
+    contact, chosen = case.contact, adhesion(case.contact)
     for key in chosen.takes:
         if getattr(contact, key) is None:
             yield CaseError(f"contact.{key}", None, f"missing; adhesion '{chosen.word}' needs it")
     if chosen is Adhesion.NONE:
         return
-    if "elastic" in chosen.marks and not is_hertz(case):
+    if "elastic" in chosen.marks and not is_hertz(contact):
         yield CaseError(
             "contact.adhesion", chosen.word,
             f"needs law 'Hertz-Mindlin', whose contacts have an area; '{Adhesion.CONSTANT.word}' and "
             f"'{Adhesion.DMT.word}' go with law '{contact.law}'",
         )  # fmt: skip
-    if timing(case) is not ContactTiming.AT_STEPS and not is_hertz(case) and not has_clumps(case):
+    springs = not is_hertz(contact) and not has_clumps(case.grains)
+    if timing(case) is not ContactTiming.AT_STEPS and springs:
         yield CaseError(
             "contact.timing", contact.timing,
             "must be 'at steps' (or left out) with adhesion: contacts that begin and end within steps are "
@@ -77,7 +78,7 @@ def _check_adhesion(case: Case) -> Iterator[CaseError]:
 
 def check_expected_speed(case: Case) -> Iterator[CaseError]:
     """Find elastic spheres whose contacts have no duration, because nothing makes them fast."""
-    if is_hertz(case) and not 0.0 < expected_speed(case)[0] < math.inf:
+    if is_hertz(case.contact) and not 0.0 < expected_speed(case)[0] < math.inf:
         yield CaseError(
             "contact.expected_speed",
             None,

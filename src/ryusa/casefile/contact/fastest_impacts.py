@@ -13,11 +13,13 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import adhesion, is_hertz, law_of, pair_values, stiffness
 from ryusa.casefile.facts import Derived
+from ryusa.casefile.feeds.schema import FeedSection
 from ryusa.casefile.feeds.values import corners_of
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.row.ends import peak_discharge
 from ryusa.casefile.row.values import critical_depth, deepest, reaches, row_plan, stream
 from ryusa.casefile.walls.mesh import box_of
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.casefile.water.values import terminal_velocity, water_speed
 from ryusa.laws import collision, water
 from ryusa.laws.families import Adhesion
@@ -65,7 +67,7 @@ def fastest_impacts(case: Case, derived: Derived) -> tuple[float, Kind]:
     bed = isinstance(case.build, PackingSection | FlumeSection)
     if case.water is None and bed and slope_at_last(case.motion, case.timeline) > 0.0:
         return math.sqrt(2.0 * derived.g * derived.d), SLIDE
-    fall, walls = _fall_speed(case, derived), _wall_speed(case)
+    fall, walls = _fall_speed(case, derived), _wall_speed(case.walls)
     flow, kind = _flow_speed(case, derived)
     settling = terminal_velocity(case)
     falling = LAYERS if bed or isinstance(case.build, BoxSection) else FALL
@@ -92,7 +94,7 @@ def overlaps_expected(case: Case, derived: Derived) -> tuple[float, float, str]:
 def heaviest_overlap(case: Case, derived: Derived, speed: float) -> float:
     """Overlap over d of the heaviest grain that hits the smallest one, which others hold in place [-]."""
     one, heavier = pair_values(case, derived.d, False), (derived.d_max / derived.d) ** 3
-    if is_hertz(case) or adhesion(case) is not Adhesion.NONE:
+    if is_hertz(case.contact) or adhesion(case.contact) is not Adhesion.NONE:
         r = 0.5 * derived.d_max * derived.d_min / (derived.d_max + derived.d_min)
         overlap = largest_overlap_of(law_of(case), heavier * one.m, r, speed)
     else:
@@ -105,7 +107,7 @@ def _flow_speed(case: Case, derived: Derived) -> tuple[float, Kind]:
     wet = case.water
     if wet is None or wet.profile == "still":
         return 0.0, FLOW
-    z = max([1.25 * derived.d, *(height for height, _ in _feeds(case))])
+    z = max([1.25 * derived.d, *(height for height, _ in _feeds(case.feeds))])
     if case.row is None or not stream(case):
         return abs(water_speed(case, derived, z)), FLOW
     q = peak_discharge(case)
@@ -131,23 +133,23 @@ def _fall_speed(case: Case, derived: Derived) -> float:
     elif isinstance(build, BoxSection | PackingSection | FlumeSection):
         below = build.height if isinstance(build, BoxSection) else 0.0
         heights.append(below + build.layers * build.gap * room(case))
-    boxes = [box_of(case, wall, f"walls.{k}") for k, wall in enumerate(case.walls)]
+    boxes = [box_of(case.folder, wall, f"walls.{k}") for k, wall in enumerate(case.walls)]
     for wall, (low, high) in zip(case.walls, boxes, strict=True):
         if wall.angular_velocity is not None and any(wall.angular_velocity[:2]):
             heights.append(float(high[2] - low[2]))
     lowest = min((float(low[2]) for low, _ in boxes), default=0.0)
     lighter = 2.0 * derived.g * derived.m_weight / (derived.m + derived.m_added)
-    fed = [speed**2 + lighter * (height - lowest) for height, speed in _feeds(case)]
+    fed = [speed**2 + lighter * (height - lowest) for height, speed in _feeds(case.feeds)]
     return math.sqrt(max([lighter * max(heights), *fed, 0.0]))
 
 
-def _feeds(case: Case) -> list[tuple[float, float]]:
+def _feeds(feeds: tuple[FeedSection, ...]) -> list[tuple[float, float]]:
     """Greatest height [m] and speed [m/s] of the grains of each feed."""
-    corners = [(corners_of(one), math.hypot(*one.velocity)) for one in case.feeds]
+    corners = [(corners_of(one), math.hypot(*one.velocity)) for one in feeds]
     return [(float(found[1][2]), speed) for found, speed in corners if found is not None]
 
 
-def _wall_speed(case: Case) -> float:
+def _wall_speed(walls: tuple[WallSection, ...]) -> float:
     """Speed of the fastest wall or belt [m/s], without what a wall turns."""
-    moved = [one for wall in case.walls for one in (wall.velocity, wall.surface_velocity) if one is not None]
+    moved = [one for wall in walls for one in (wall.velocity, wall.surface_velocity) if one is not None]
     return max((math.hypot(*one) for one in moved), default=0.0)

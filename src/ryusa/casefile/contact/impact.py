@@ -48,7 +48,7 @@ def check_overlap(case: Case, derived: Derived, data: dict[str, Any]) -> Iterato
     impact = largest_overlap(case, expected_speed(case)[0]) / derived.d
     overlap = max(impact, _at_rest(case, derived)[0])
     if overlap > 1.0:
-        key = "youngs_modulus" if is_hertz(case) else "stiffness"
+        key = "youngs_modulus" if is_hertz(case.contact) else "stiffness"
         yield CaseError(
             f"contact.{key}", data["contact"].get(key), f"is so small that grains would overlap by "
             f"{overlap:.3g} diameters and pass through one another; motion is stable up to {STABLE[1]:g}",
@@ -61,8 +61,8 @@ def _at_rest(case: Case, derived: Derived) -> tuple[float, str]:
         return 0.0, ""
     layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
     weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
-    origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case) else 'over k_n d'}"
-    origin += "" if adhesion(case) is Adhesion.NONE else ", with adhesion"
+    origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case.contact) else 'over k_n d'}"
+    origin += "" if adhesion(case.contact) is Adhesion.NONE else ", with adhesion"
     return overlap_under(case, weight) / derived.d, origin
 
 
@@ -70,7 +70,7 @@ def _overlap(case: Case, derived: Derived, rest: float) -> ExplainRow:
     least, most, origin = overlaps_expected(case, derived)
     if rest > most:
         least, most, origin = rest, rest, "more at rest than in impacts"
-    stiff, (low, high) = "Young's modulus" if is_hertz(case) else "k_n", STABLE
+    stiff, (low, high) = "Young's modulus" if is_hertz(case.contact) else "k_n", STABLE
     verdict, flag = f"in the stable range {low:g} to {high:g}", ""
     if least > high:
         verdict, flag = f"above the stable range {low:g} to {high:g}; take a larger {stiff}", "warning"

@@ -22,6 +22,7 @@ from ryusa.casefile.feeds.values import (
     share_filled,
     unit_of,
 )
+from ryusa.casefile.motion import MotionSection
 from ryusa.casefile.section import given
 from ryusa.casefile.shape import extent
 from ryusa.errors import CaseError
@@ -106,8 +107,8 @@ def _shapes(case: Case) -> Iterator[CaseError]:
             continue
         pairs = (("low", "high"), box) if box != (None, None) else (("centre", "radius"), disc)
         yield from _missing(key, *pairs)
-        yield from _direction(case, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
-        yield from _box(case, key, feed.low, feed.high, _largest(case, feed))
+        yield from _direction(case.motion, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
+        yield from _box(case.motion, key, feed.low, feed.high, _largest(case, feed))
         if case.motion.plane:
             for name, point in (("centre", feed.centre), ("velocity", feed.velocity)):
                 if point is not None and point[1] != 0.0:
@@ -121,14 +122,14 @@ def _shapes(case: Case) -> Iterator[CaseError]:
         pairs = (("low", "high"), box) if box != (None, None) else (("point", "normal"), plane)
         yield from _missing(key, *pairs)
         if one.normal is not None:
-            yield from _direction(case, f"{key}.normal", one.normal, True)
+            yield from _direction(case.motion, f"{key}.normal", one.normal, True)
             for axis, is_periodic in zip((0, 1), periodic(case), strict=True):
                 if is_periodic and one.normal[axis] != 0.0:
                     name = "xy"[axis]
                     yield CaseError(
                         f"{key}.normal", list(one.normal), f"must have {name} = 0, because {name} is periodic"
                     )
-        yield from _box(case, key, one.low, one.high, _largest(case))
+        yield from _box(case.motion, key, one.low, one.high, _largest(case))
 
 
 def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) -> Iterator[CaseError]:
@@ -138,31 +139,31 @@ def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) ->
             yield CaseError(f"{key}.{name}", None, f"missing; {other} needs it")
 
 
-def _direction(case: Case, key: str, normal: Sequence[float], given: bool) -> Iterator[CaseError]:
+def _direction(motion: MotionSection, key: str, normal: Sequence[float], given: bool) -> Iterator[CaseError]:
     if given and not any(normal):
         yield CaseError(key, list(normal), "must not be zero")
-    elif given and case.motion.plane and normal[1] != 0.0:
+    elif given and motion.plane and normal[1] != 0.0:
         yield CaseError(key, list(normal), "must have y = 0 in a plane scene")
 
 
 def _largest(case: Case, feed: FeedSection | None = None) -> float:
     """Diameter of the sphere that holds the largest grain, or that of a feed, however it is turned [m]."""
-    own = feed is not None and not _led(case, feed)
+    own = feed is not None and not _led(case.exits, feed)
     return (size_range(case, feed.material)[1] if own and feed else sizes(case)[2]) * extent(case)
 
 
-def _led(case: Case, feed: FeedSection) -> bool:
+def _led(exits: tuple[ExitSection, ...], feed: FeedSection) -> bool:
     """Whether an exit leads to a feed, which may bring it grains of any size."""
-    return any(one.to == feed.name for one in case.exits)
+    return any(one.to == feed.name for one in exits)
 
 
 def _box(
-    case: Case, key: str, low: Sequence[float] | None, high: Sequence[float] | None, largest: float
+    motion: MotionSection, key: str, low: Sequence[float] | None, high: Sequence[float] | None, largest: float
 ) -> Iterator[CaseError]:
     """Find boxes without a volume, or thinner than the largest grain."""
     if low is None or high is None:
         return
-    plane = case.motion.plane
+    plane = motion.plane
     if plane and (low[1], high[1]) != (0.0, 0.0):
         yield CaseError(f"{key}.low", list(low), "must have y = 0 in a plane scene, as high")
     axes = (0, 2) if plane else (0, 1, 2)
@@ -182,7 +183,7 @@ def _feed(case: Case, key: str, feed: FeedSection) -> Iterator[CaseError]:
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
         )
         return
-    if not feed.brings and not _led(case, feed):
+    if not feed.brings and not _led(case.exits, feed):
         yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
     if feed.sedigraph is not None:
         faults = [*_sedigraph(case, key, feed)]

@@ -2,10 +2,12 @@
 
 from typing import Any
 
+from ryusa.casefile.builders.schema import BuildSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import grading_of, grading_rows, reference_diameter
-from ryusa.casefile.grains.schema import OWN_SIZES, spread_of
+from ryusa.casefile.grains.schema import OWN_SIZES, GrainsSection, spread_of
+from ryusa.casefile.materials.schema import MaterialSection
 from ryusa.casefile.rows import ExplainRow, count, number
 from ryusa.casefile.section import given
 from ryusa.laws import drag, motion
@@ -32,15 +34,15 @@ def mean_cube(case: Case) -> float:
     return reference_diameter(case) ** 3 * wider
 
 
-def has_own_sizes(case: Case, name: str | None) -> bool:
+def has_own_sizes(materials: dict[str, MaterialSection], name: str | None) -> bool:
     """Whether a material says how large its grains are."""
-    own = case.materials.get(name) if name is not None else None
+    own = materials.get(name) if name is not None else None
     return own is not None and any(given(own, key) for key in OWN_SIZES)
 
 
 def sized_as(case: Case, name: str | None) -> Case:
     """The case with the sizes of a material as those of [grains]; as it is where the material has none."""
-    if name is None or not has_own_sizes(case, name):
+    if name is None or not has_own_sizes(case.materials, name):
         return case
     own, grains = case.materials[name], case.grains
     curve = own.sieve_curve
@@ -54,24 +56,24 @@ def sized_as(case: Case, name: str | None) -> Case:
     return case.model_copy(update={"grains": grains.model_copy(update=changed)})
 
 
-def laid_shares(case: Case) -> dict[str | None, float]:
+def laid_shares(grains: GrainsSection, build: BuildSection) -> dict[str | None, float]:
     """Shares by number of what the builder lays, by material; None is that of [grains]."""
-    if case.build.kind == "empty" or (case.build.kind == "stream" and case.build.bed == 0.0):
+    if build.kind == "empty" or (build.kind == "stream" and build.bed == 0.0):
         return {}
-    rest = 1.0 - sum(case.grains.mixture.values())
-    return {**({None: rest} if rest > 1e-9 else {}), **case.grains.mixture}
+    rest = 1.0 - sum(grains.mixture.values())
+    return {**({None: rest} if rest > 1e-9 else {}), **grains.mixture}
 
 
 def graded(case: Case) -> bool:
     """Whether the builder lays a sieve curve, or materials of sizes of their own."""
-    laid = laid_shares(case)
+    laid = laid_shares(case.grains, case.build)
     curves = (grading_of(sized_as(case, name)) for name in laid)
-    return any(has_own_sizes(case, name) for name in laid) or any(one is not None for one in curves)
+    return any(has_own_sizes(case.materials, name) for name in laid) or any(one is not None for one in curves)
 
 
 def laid_mean_cube(case: Case) -> float:
     """Mean of d^3 over what the builder lays [m3]; of builder "empty" that of [grains]."""
-    laid = laid_shares(case)
+    laid = laid_shares(case.grains, case.build)
     return sum(share * mean_cube(sized_as(case, name)) for name, share in laid.items()) or mean_cube(case)
 
 

@@ -36,7 +36,7 @@ def check_materials(case: Case) -> Iterator[CaseError]:
         for k, pair in enumerate(case.pairs):
             yield CaseError(f"pairs.{k}.materials", list(pair.materials), "needs [materials.NAME]")
         return
-    known = names_of(case)
+    known = names_of(case.materials)
     faults = [*_names(case, known), *_keys(case), *_scene(case)]
     yield from faults
     if not faults:
@@ -76,7 +76,8 @@ def _names(case: Case, known: tuple[str, ...]) -> Iterator[CaseError]:
 
 def _keys(case: Case) -> Iterator[CaseError]:
     """Find keys of materials and pairs that contradict each other, or have no effect."""
-    elastic, sections = is_hertz(case), [(f"materials.{name}", one) for name, one in case.materials.items()]
+    sections = [(f"materials.{name}", one) for name, one in case.materials.items()]
+    elastic = is_hertz(case.contact)
     every: list[tuple[str, MaterialSection | PairSection]] = [*sections]
     every += [(f"pairs.{k}", one) for k, one in enumerate(case.pairs)]
     for key, one in every:
@@ -88,7 +89,7 @@ def _keys(case: Case) -> Iterator[CaseError]:
             value = one.rolling_coefficient
             yield CaseError(f"{key}.rolling_coefficient", value, "has no effect with rolling.model = 'none'")
         for name in OF_ADHESION:
-            if given(one, name) and name not in adhesion(case).takes:
+            if given(one, name) and name not in adhesion(case.contact).takes:
                 yield CaseError(
                     f"{key}.{name}", getattr(one, name),
                     f"has no effect with contact.adhesion = '{case.contact.adhesion}'",
@@ -115,7 +116,7 @@ def _keys(case: Case) -> Iterator[CaseError]:
     shares = sum(case.grains.mixture.values())
     if shares > 1.0 + 1e-9:
         yield CaseError("grains.mixture", None, f"has shares that sum to {shares:g}, more than 1")
-    if case.grains.mixture and made_of(case):
+    if case.grains.mixture and made_of(case.build):
         yield CaseError("grains.mixture", None, "excludes build.made_of; give only one of the two")
     if case.grains.mixture and isinstance(case.build, EmptySection):
         yield CaseError("grains.mixture", None, "has no effect with builder 'empty'; give feeds a material")
@@ -147,7 +148,7 @@ def _missing(case: Case) -> Iterator[CaseError]:
     pairs = meeting(case)
     for a, b in pairs:
         k = entries.index({a, b}) if {a, b} in entries else -1
-        for key in keys_of_pairs(case):
+        for key in keys_of_pairs(case.contact):
             values = [value_of(case, name, key) for name in (a, b)]
             asked = k >= 0 and own_value(case.pairs[k], key) is not None
             if values[0] != values[1] and not asked:

@@ -31,12 +31,12 @@ def material_rows(case: Case) -> list[ExplainRow]:
         origin = "[contact]" if a == b == GRAINS else origin
         if {a, b} in entries and a != b:
             origin = f"pairs.{entries.index({a, b})}"
-        values = f"mu {friction(one):.4g}, e {one.contact.restitution:.4g}"
+        values = f"mu {friction(one.contact):.4g}, e {one.contact.restitution:.4g}"
         if case.rolling.model != "none":
             values += f", rolling {one.rolling.coefficient:.4g}"
-        for key in adhesion(case).takes:
+        for key in adhesion(case.contact).takes:
             values += f", {key} {getattr(one.contact, key):.4g} {_ADHESION_UNITS[key]}"
-        if is_hertz(case):
+        if is_hertz(case.contact):
             e, nu = one.contact.youngs_modulus, one.contact.poisson_ratio
             values += f", E {e:.4g} Pa, nu {nu:.3g} if both were alike"
         else:

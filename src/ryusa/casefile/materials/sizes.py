@@ -28,7 +28,11 @@ def _sizes(case: Case, name: str, one: MaterialSection) -> Iterator[CaseError]:
                     f"{key}.{other}", None, f"excludes {key}.sieve_curve; give only one of the two"
                 )
         yield from check_points(f"{key}.sieve_curve", one.sieve_curve)
-    if has_own_sizes(case, name) and name in case.grains.mixture and case.build.kind not in BUILDERS:
+    if (
+        has_own_sizes(case.materials, name)
+        and name in case.grains.mixture
+        and case.build.kind not in BUILDERS
+    ):
         yield CaseError(
             f"grains.mixture.{name}", None,
             f"is of a size of its own, which builder '{case.build.kind}' does not draw; "
@@ -38,7 +42,7 @@ def _sizes(case: Case, name: str, one: MaterialSection) -> Iterator[CaseError]:
 
 def size_rows(case: Case, name: str) -> list[ExplainRow]:
     """Sizes of a material that has its own."""
-    if not has_own_sizes(case, name):
+    if not has_own_sizes(case.materials, name):
         return []
     low, high = drawn_range(case, name)
     if low == high:

@@ -13,6 +13,7 @@ from ryusa.casefile.builders.schema import EmptySection
 from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.builders.values import built_counts, size_range
 from ryusa.casefile.case import Case
+from ryusa.casefile.contact.schema import ContactSection
 from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness
 from ryusa.casefile.materials.schema import MaterialSection, PairSection
 from ryusa.laws.families import Adhesion
@@ -23,9 +24,9 @@ _OF_PAIRS = ("friction", "restitution", "rolling_coefficient")
 OF_ADHESION = Adhesion.all_takes()  # of pairs too, where the case has adhesion
 
 
-def names_of(case: Case) -> tuple[str, ...]:
+def names_of(materials: dict[str, MaterialSection]) -> tuple[str, ...]:
     """Materials of a case in the order of their numbers, "grains" first."""
-    return (GRAINS, *case.materials)
+    return (GRAINS, *materials)
 
 
 def uses(case: Case) -> Iterator[tuple[str, str]]:
@@ -34,7 +35,7 @@ def uses(case: Case) -> Iterator[tuple[str, str]]:
         yield "grains.bed_material", case.grains.bed_material
     for name in case.grains.mixture:
         yield f"grains.mixture.{name}", name
-    for group, name in made_of(case).items():
+    for group, name in made_of(case.build).items():
         yield f"build.made_of.{group}", name
     for key in ("feeds", "planes", "walls"):
         for k, one in enumerate(getattr(case, key)):
@@ -45,7 +46,7 @@ def uses(case: Case) -> Iterator[tuple[str, str]]:
 def free_materials(case: Case) -> set[str]:
     """Materials of which there are free grains."""
     free = {feed.material or GRAINS for feed in case.feeds} | set(case.grains.mixture)
-    free |= set(made_of(case).values())
+    free |= set(made_of(case.build).values())
     if not isinstance(case.build, EmptySection) and sum(case.grains.mixture.values()) < 1.0 - 1e-9:
         free.add(GRAINS)
     return free or {GRAINS}
@@ -53,7 +54,7 @@ def free_materials(case: Case) -> set[str]:
 
 def meeting(case: Case) -> dict[tuple[str, str], bool]:
     """Pairs of materials that can meet, in the order of their numbers, and whether as two free grains."""
-    order, free = names_of(case), free_materials(case)
+    order, free = names_of(case.materials), free_materials(case)
     bed = {case.grains.bed_material or GRAINS}
     bed |= {one.material or GRAINS for one in (*case.planes, *case.walls)}
     meet = bool(case.feeds) or built_counts(case)[2]
@@ -75,14 +76,14 @@ def case_of_pair(case: Case, a: str, b: str) -> Case:
         return case
     contact = case.contact
     k_a, k_b = _stiffness(case, a), _stiffness(case, b)
-    e_a, e_b = _young(case, a), _young(case, b)
-    nu_a, nu_b = _poisson(case, a), _poisson(case, b)
-    values = {key: _of_pair(case, a, b, key) for key in keys_of_pairs(case)}
+    e_a, e_b = _young(case.contact, case.materials, a), _young(case.contact, case.materials, b)
+    nu_a, nu_b = _poisson(case.contact, case.materials, a), _poisson(case.contact, case.materials, b)
+    values = {key: _of_pair(case, a, b, key) for key in keys_of_pairs(case.contact)}
     changed: dict[str, Any] = {
         "friction": values["friction"], "friction_angle": None, "restitution": values["restitution"],
-        **{key: values[key] for key in adhesion(case).takes},
+        **{key: values[key] for key in adhesion(case.contact).takes},
     }  # fmt: skip
-    if is_hertz(case):
+    if is_hertz(case.contact):
         changed["youngs_modulus"] = young_of_two(e_a, nu_a, e_b, nu_b)
         changed["poisson_ratio"] = poisson_of_two(e_a, nu_a, e_b, nu_b)
     else:
@@ -101,9 +102,9 @@ def case_of_pair(case: Case, a: str, b: str) -> Case:
     )
 
 
-def keys_of_pairs(case: Case) -> tuple[str, ...]:
+def keys_of_pairs(contact: ContactSection) -> tuple[str, ...]:
     """Keys that belong to a pair and not to its materials."""
-    return (*_OF_PAIRS, *adhesion(case).takes)
+    return (*_OF_PAIRS, *adhesion(contact).takes)
 
 
 def lightest_of(case: Case, a: str, b: str, free: bool) -> Case:
@@ -135,19 +136,19 @@ def density(case: Case, name: str) -> float:
 
 def _stiffness(case: Case, name: str) -> float:
     own = case.materials[name].stiffness if name != GRAINS else None
-    if own is not None or is_hertz(case):
+    if own is not None or is_hertz(case.contact):
         return own or math.nan
     return stiffness(case)[0]
 
 
-def _young(case: Case, name: str) -> float:
-    own = case.materials[name].youngs_modulus if name != GRAINS else None
-    return own or case.contact.youngs_modulus or math.nan
+def _young(contact: ContactSection, materials: dict[str, MaterialSection], name: str) -> float:
+    own = materials[name].youngs_modulus if name != GRAINS else None
+    return own or contact.youngs_modulus or math.nan
 
 
-def _poisson(case: Case, name: str) -> float:
-    own = case.materials[name].poisson_ratio if name != GRAINS else None
-    return case.contact.poisson_ratio if own is None else own
+def _poisson(contact: ContactSection, materials: dict[str, MaterialSection], name: str) -> float:
+    own = materials[name].poisson_ratio if name != GRAINS else None
+    return contact.poisson_ratio if own is None else own
 
 
 def own_value(section: MaterialSection | PairSection, key: str) -> float | None:
@@ -164,7 +165,7 @@ def value_of(case: Case, name: str, key: str) -> float:
     if own is not None:
         return own
     if key == "friction":
-        return friction(case)
+        return friction(case.contact)
     if key in OF_ADHESION:
         value: float | None = getattr(case.contact, key)
         return value or 0.0

@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 from typing import Any
 
-from ryusa.casefile.builders.schema import FromFile, SaltationSection
+from ryusa.casefile.builders.schema import BuildSection, FromFile, SaltationSection
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.case import Case
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.precision import INDEPENDENT, PrecisionSection, measure_of
+from ryusa.casefile.record.schema import StopSection, Timeline
 from ryusa.casefile.record.values import begin_of
 from ryusa.errors import CaseError
 
@@ -17,12 +18,11 @@ CHANGES = (
 )  # fmt: skip
 
 
-def check_stop(case: Case) -> Iterator[CaseError]:
+def check_stop(stop: StopSection, build: BuildSection) -> Iterator[CaseError]:
     """Find a run without an end, and saltations without a bed."""
-    stop = case.stop
     if stop.time is None and stop.saltations is None and stop.rest is None:
         yield CaseError("stop", None, "needs at least one of time, saltations, rest")
-    if stop.saltations is not None and not isinstance(case.build, SaltationSection | FromFile):
+    if stop.saltations is not None and not isinstance(build, SaltationSection | FromFile):
         yield CaseError(
             "stop.saltations",
             stop.saltations,
@@ -30,10 +30,10 @@ def check_stop(case: Case) -> Iterator[CaseError]:
         )
 
 
-def check_timeline(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
+def check_timeline(timeline: Timeline, stop: StopSection, data: dict[str, Any]) -> Iterator[CaseError]:
     """Find changes with several keys or none, out of order, or after the end of the run."""
     before, written = 0.0, data.get("timeline", [])
-    for k, change in enumerate(case.timeline):
+    for k, change in enumerate(timeline):
         key, at = f"timeline.{k}", written[k]["at"]
         present = [name for name in CHANGES if getattr(change, name) is not None]
         if len(present) != 1:
@@ -44,7 +44,7 @@ def check_timeline(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
             yield CaseError(
                 f"{key}.at", at, "is earlier than the change before it; write the timeline in order of time"
             )
-        if case.stop.time is not None and change.at > case.stop.time:
+        if stop.time is not None and change.at > stop.time:
             yield CaseError(f"{key}.at", at, f"comes after stop.time, {data['stop']['time']}")
         before = max(before, change.at)
 

@@ -74,6 +74,9 @@ class ChangeSection(Section):
     """New height of the surface beyond the lower end of a row of columns, end = "level"."""
 
 
+Timeline = tuple[ChangeSection, ...]
+
+
 class RecordSection(Section):
     """What the run folder keeps."""
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ryusa.casefile.case import Case
+from ryusa.casefile.contact.schema import ContactSection
 from ryusa.casefile.contact.values import is_hertz, parting, timing
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.rows import ExplainRow, number
@@ -33,13 +34,13 @@ def check_time(case: Case, derived: Derived, data: dict[str, Any]) -> Iterator[C
             "time.steps_per_contact",
             steps,
             f"must be at least {FEWEST_STEPS:g} with contact.law '{case.contact.law}'"
-            if is_hertz(case)
+            if is_hertz(case.contact)
             else f"must be at least {FEWEST_STEPS:g} with contact.timing '{timing(case).word}'; "
             f"'{ContactTiming.EXACT.word}' allows {COARSEST:g}",
         )
     if derived.dt > derived.step_limit:
         key = "steps_per_contact" if case.time.step is None else "step"
-        yield CaseError(f"time.{key}", written.get(key), _unstable(case, derived, key))
+        yield CaseError(f"time.{key}", written.get(key), _unstable(case.contact, derived, key))
     if case.time.step is None:
         return
     t_col, steps = derived.shortest, derived.steps_per_contact
@@ -64,7 +65,7 @@ def _exact(case: Case) -> bool:
 
 def steps_by_default(case: Case) -> float:
     """Steps in the shortest contact when the case gives no step, as far as contacts decide."""
-    return steps_of_law(is_hertz(case), timing(case), case.contact.restitution == 1.0)
+    return steps_of_law(is_hertz(case.contact), timing(case), case.contact.restitution == 1.0)
 
 
 def steps_of_law(hertz: bool, when: ContactTiming, lossless: bool) -> float:
@@ -74,11 +75,11 @@ def steps_of_law(hertz: bool, when: ContactTiming, lossless: bool) -> float:
     return STEPS_LOSSLESS if lossless and when == ContactTiming.EXACT else STEPS_PER_CONTACT[when]
 
 
-def _unstable(case: Case, derived: Derived, key: str) -> str:
+def _unstable(contact: ContactSection, derived: Derived, key: str) -> str:
     """Which motion is unstable, and what makes it stable."""
     tangential = derived.step_limit_shear == derived.step_limit
     which, softer = ("tangential", "contact.shear_ratio") if tangential else ("normal", "contact.stiffness")
-    softer = "contact.youngs_modulus" if is_hertz(case) else softer
+    softer = "contact.youngs_modulus" if is_hertz(contact) else softer
     shorter = "a larger time.steps_per_contact" if key == "steps_per_contact" else "a smaller time.step"
     return (
         f"dt = {derived.dt:.3g} s is above {derived.step_limit:.3g} s, the largest step at which the {which} "
@@ -91,19 +92,19 @@ def time_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Durations of contacts and the time step."""
     rows: list[ExplainRow] = []
     undamped = "Eq. (8) with added mass, without damping"
-    if is_hertz(case):
+    if is_hertz(case.contact):
         undamped = "Hertz, at the expected impact speed, with added mass, without damping"
     for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
         rows += [
             number("time", f"collision time {name}", pair.t_undamped, "s", undamped),
-            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {parting(case)}"),
+            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {parting(case.contact)}"),
         ]
     partners = "two free grains" if derived.meet else "a grain on a fixed one"
-    if is_hertz(case) and not derived.meet:
+    if is_hertz(case.contact) and not derived.meet:
         partners = "a grain on a wall"
     size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
     partners += size if derived.d_max > derived.d_min else ""
-    partners += ", pushed where a clump gives way most" if has_clumps(case) else ""
+    partners += ", pushed where a clump gives way most" if has_clumps(case.grains) else ""
     few = derived.steps_per_contact < FEWEST_STEPS and not _exact(case)
     ratio = "shortest contact over dt"
     ratio += "; the paper asks for at least ten: with fewer the restitution is not reached" if few else ""

@@ -52,7 +52,7 @@ def check_reach(case: Case) -> Iterator[CaseError]:
         yield error
         return
     assert reach is not None
-    if case.materials or has_clumps(case):
+    if case.materials or has_clumps(case.grains):
         yield CaseError(KEY, name, "brings spheres of one material, and this case has others: take one")
     for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
         for k, one in enumerate(entries):

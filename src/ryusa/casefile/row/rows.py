@@ -67,7 +67,7 @@ def _walls(case: Case) -> list[ExplainRow]:
     dams = () if (keys := case.row) is None else keys.dams
     without: list[str] = []
     for k, one in enumerate(case.walls):
-        low, high = box_of(case, one, f"walls.{k}")
+        low, high = box_of(case.folder, one, f"walls.{k}")
         if not any(dam.begin < high[0] and dam.end > low[0] for dam in dams):
             without.append(f"'{one.name}'")
     if not without:
@@ -107,7 +107,7 @@ def _bed(case: Case) -> list[ExplainRow]:
     if case.build.kind != "stream" or case.build.bed == 0.0:
         return [word("water", "bed at the start", "none", "build.bed not given: all grains come from feeds")]
     points, (begin, end) = bed_points(case), stream_span(case)
-    if (bed := bed_of_run(case)) is not None:
+    if (bed := bed_of_run(case.build)) is not None:
         table = table_of(case)
         assert table is not None
         origin = (

@@ -8,6 +8,7 @@ from ryusa.casefile.builders.schema import PackingSection
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.case import Case
 from ryusa.casefile.facts import Derived
+from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.row.meshes import check_mesh_in_row
 from ryusa.casefile.row.values import walls_of_stream
 from ryusa.casefile.section import given
@@ -61,8 +62,8 @@ def check_walls(case: Case) -> Iterator[CaseError]:
                 known = ", ".join(names) or "there is none"
                 yield CaseError(at, name, f"must be a wall: {known}", nearest_word(name, names))
             yield from _motion(case, f"timeline.{k}.move", entry.move)
-    yield from check_moves(case)
-    yield from check_belts(case)
+    yield from check_moves(case.walls, case.timeline)
+    yield from check_belts(case.walls, case.timeline)
 
 
 def _shape(key: str, wall: WallSection) -> Iterator[CaseError]:
@@ -102,7 +103,7 @@ def check_meshes(case: Case, derived: Derived) -> Iterator[CaseError]:
     for k, wall in enumerate(case.walls):
         key = f"walls.{k}"
         try:
-            low, high = box_of(case, wall, key)
+            low, high = box_of(case.folder, wall, key)
         except CaseError as error:
             yield error
             continue
@@ -119,16 +120,16 @@ def check_meshes(case: Case, derived: Derived) -> Iterator[CaseError]:
                 f"{key}.name", wall.name,
                 f"is {across} m, over {LARGEST:g} times the largest grain, {derived.d_max:.3g} m; {remedy}",
             )  # fmt: skip
-        elif not _moves(case, wall):
+        elif not _moves(case.timeline, wall):
             yield from _out_of_reach(case, wall, key, low, high)
             if wall.shape == "mesh":
                 yield from check_mesh_in_row(case, f"{key}.file", wall.unit or "", low, high, derived.d_max)
 
 
-def _moves(case: Case, wall: WallSection) -> bool:
+def _moves(timeline: Timeline, wall: WallSection) -> bool:
     """Whether a wall moves at any time."""
     own = any(given(wall, one) for one in ("velocity", "angular_velocity", "amplitude", "servo"))
-    return own or any(entry.move is not None and entry.move.wall == wall.name for entry in case.timeline)
+    return own or any(entry.move is not None and entry.move.wall == wall.name for entry in timeline)
 
 
 def _out_of_reach(case: Case, wall: WallSection, key: str, low: Floats, high: Floats) -> Iterator[CaseError]:
@@ -192,10 +193,10 @@ def check_servo(case: Case, wall: WallSection, key: str) -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def check_moves(case: Case) -> Iterator[CaseError]:
+def check_moves(walls: tuple[WallSection, ...], timeline: Timeline) -> Iterator[CaseError]:
     """Find entries of the timeline that move a wall which a servo presses."""
-    pressed = {wall.name for wall in case.walls if given(wall, "servo")}
-    for k, entry in enumerate(case.timeline):
+    pressed = {wall.name for wall in walls if given(wall, "servo")}
+    for k, entry in enumerate(timeline):
         if entry.move is not None and entry.move.wall in pressed:
             yield CaseError(
                 f"timeline.{k}.move.wall", entry.move.wall,
@@ -203,13 +204,13 @@ def check_moves(case: Case) -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def check_belts(case: Case) -> Iterator[CaseError]:
+def check_belts(walls: tuple[WallSection, ...], timeline: Timeline) -> Iterator[CaseError]:
     """Find walls whose surface cannot run, and moves that would let it."""
-    shape = {wall.name: wall.shape for wall in case.walls}
-    asked = [(f"walls.{k}", wall.name, wall.surface_velocity) for k, wall in enumerate(case.walls)]
+    shape = {wall.name: wall.shape for wall in walls}
+    asked = [(f"walls.{k}", wall.name, wall.surface_velocity) for k, wall in enumerate(walls)]
     asked += [
         (f"timeline.{k}.move", entry.move.wall, entry.move.surface_velocity)
-        for k, entry in enumerate(case.timeline)
+        for k, entry in enumerate(timeline)
         if entry.move is not None
     ]
     for key, name, velocity in asked:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ryusa.casefile.case import Case
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError, ParseError
@@ -50,7 +49,7 @@ class Mesh:
         return flipped_sides(welded(self.corners))
 
 
-def mesh_of(case: Case, wall: WallSection, key: str) -> Mesh:
+def mesh_of(folder: Path, wall: WallSection, key: str) -> Mesh:
     """Read the mesh of a wall, in SI and in its place; `key` is that of the wall.
 
     Raises
@@ -58,7 +57,7 @@ def mesh_of(case: Case, wall: WallSection, key: str) -> Mesh:
     CaseError : no such file, not a mesh, or an unknown unit.
     """
     assert wall.file is not None
-    path = inside(case.folder, f"{key}.file", wall.file)
+    path = inside(folder, f"{key}.file", wall.file)
     try:
         unit = quantity(f"1 {wall.unit}", "m")
     except ValueError as error:
@@ -68,7 +67,7 @@ def mesh_of(case: Case, wall: WallSection, key: str) -> Mesh:
     if wall.turn_axis is not None and wall.turn_angle is not None:
         turn = (wall.turn_axis, wall.turn_angle)
     placed = partial(_placed, unit * wall.scale, turn, wall.at or (0.0, 0.0, 0.0))
-    return contents(case.folder, f"{key}.file", wall.file, path, placed)
+    return contents(folder, f"{key}.file", wall.file, path, placed)
 
 
 @lru_cache(maxsize=8)
@@ -102,10 +101,10 @@ def _placed(
     return Mesh(corners, low, high, int(flat.sum()), doubled)
 
 
-def box_of(case: Case, wall: WallSection, key: str) -> tuple[Floats, Floats]:
+def box_of(folder: Path, wall: WallSection, key: str) -> tuple[Floats, Floats]:
     """Lowest and highest corner of the box round a wall in its first place [m], shape (3,) each."""
     if wall.shape == "mesh":
-        mesh = mesh_of(case, wall, key)
+        mesh = mesh_of(folder, wall, key)
         return mesh.low, mesh.high
     at = np.array(wall.at or (0.0, 0.0, 0.0))
     if wall.sides is not None:

@@ -1,6 +1,7 @@
 """Rows of `ryusa check` about [[walls]], their motion, their belts and their meshes."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -22,7 +23,7 @@ def wall_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     meshes: Boxes = []
     for k, wall in enumerate(case.walls):
         key = f"walls.{k}"
-        low, high = box_of(case, wall, key)
+        low, high = box_of(case.folder, wall, key)
         size = " x ".join(f"{100.0 * one:.4g}" for one in high - low)
         ratio = float((high - low).max()) / derived.d_max
         wide = f"; {ratio:.3g} of the largest grains across"
@@ -31,7 +32,7 @@ def wall_rows(case: Case, derived: Derived) -> list[ExplainRow]:
         rows.append(word("walls", f"{wall.name}: size in x, y, z", f"{size} cm", about, flag))
         if wall.shape == "mesh":
             meshes.append((wall.name, low, high))
-            rows += mesh_rows(case, derived, wall, key)
+            rows += mesh_rows(case.folder, derived, wall, key)
         moves = [name for name in ("velocity", "angular_velocity", "amplitude") if given(wall, name)]
         if moves:
             rows.append(word("walls", f"{wall.name}: moves", _motion_text(wall), ", ".join(moves)))
@@ -92,7 +93,7 @@ def _row(case: Case, wall: WallSection, velocity: Vector, when: str, key: str) -
             f"its part along the wall: of {given:.4g} m/s the rest is normal to it and has no effect"
         )
     # friction on a material of its own is another
-    mu, g = friction(case) if wall.material is None else math.nan, case.motion.gravity
+    mu, g = friction(case.contact) if wall.material is None else math.nan, case.motion.gravity
     if mu == 0.0:
         flag = "warning"
         notes.append("without friction it takes no grain along")
@@ -113,9 +114,9 @@ def _along(wall: WallSection, velocity: Vector) -> float:
     return float(np.linalg.norm(np.cross(normal / np.linalg.norm(normal), velocity)))
 
 
-def mesh_rows(case: Case, derived: Derived, wall: WallSection, key: str) -> list[ExplainRow]:
+def mesh_rows(folder: Path, derived: Derived, wall: WallSection, key: str) -> list[ExplainRow]:
     """Triangles of a mesh, what was left out, and where it is open."""
-    mesh = mesh_of(case, wall, key)
+    mesh = mesh_of(folder, wall, key)
     found = [count("walls", f"{wall.name}: triangles", len(mesh.corners), f"{wall.file}, in {wall.unit}")]
     if mesh.empty:
         about = "triangles of no area in the file; they are left out"

@@ -42,7 +42,7 @@ def check_water(case: Case) -> Iterator[CaseError]:
         )
     if water.above != "continue" and water.depth is None and water.profile != "column":
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
-    if "drag_of_form" in water.model_fields_set and not has_clumps(case):
+    if "drag_of_form" in water.model_fields_set and not has_clumps(case.grains):
         yield CaseError("water.drag_of_form", water.drag_of_form, f"has no effect without clumps ({SHAPE})")
     if water.torque != "none" and not may_rotate(case.motion, case.timeline):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
