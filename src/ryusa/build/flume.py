@@ -35,7 +35,7 @@ def flume(case: Case, derived: Derived) -> Placement:
     if not graded(case):
         x = _lattice(case, keys, rng, cells, derived.room)
     else:
-        sized = draw_laid(case, flume_count(case), rng)
+        sized = draw_laid(case, flume_count(case, keys), rng)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
@@ -119,7 +119,7 @@ def _lattice(
 ) -> Floats:
     """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
     pitch = np.array(cells.pitch)
-    chosen = np.sort(filled_cells(flume_count(case), cells, rng))
+    chosen = np.sort(filled_cells(flume_count(case, keys), cells, rng))
     free = 0.5 * keys.jitter * np.maximum(pitch - room, 0.0)
     x = (places(chosen, cells) + 0.5) * pitch
     return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * free)

@@ -233,8 +233,8 @@ def notes_without_effect(case: Case) -> tuple[str, ...]:
     if record.tracked and events_of(case) == "all" and case.stop.saltations is None:
         notes.append("record.tracked has no effect: contacts of all grains are recorded (record.events)")
     if isinstance(build, FillSection) and build.most is not None:
-        as_many = case.model_copy(update={"build": build.model_copy(update={"most": None})})
-        if build.most >= (held := fill_count(as_many)):
+        as_many = build.model_copy(update={"most": None})
+        if build.most >= (held := fill_count(case, as_many)):
             notes.append(f"build.most = {build.most:,} has no effect: the box holds {held:,} grains")
     if _is_central(case):
         idle = [key for key in _given_keys(case) if key in _TANGENTIAL]

@@ -68,11 +68,12 @@ def check_builder(case: Case) -> Iterator[CaseError]:
         if build.offset != 0.0 and build.partner == "plane":
             yield CaseError("build.offset", build.offset, "has no effect with partner 'plane'")
     if isinstance(build, (DropSection, SaltationSection)) and not case.motion.plane:
-        lanes = build.copies if isinstance(build, DropSection) else build.starts
-        if lanes > 1:
-            key = "build.copies" if isinstance(build, DropSection) else "build.starts"
+        key = "copies" if isinstance(build, DropSection) else "starts"
+        if (lanes := getattr(build, key)) > 1:
             yield CaseError(
-                key, lanes, "needs motion.plane = true; in three dimensions grains of two lanes could meet"
+                f"build.{key}",
+                lanes,
+                "needs motion.plane = true; in three dimensions grains of two lanes could meet",
             )
     if isinstance(build, PackingSection | BoxSection) and case.motion.plane and build.rows > 1:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
@@ -124,13 +125,13 @@ def check_fill(case: Case) -> Iterator[CaseError]:
         yield CaseError("build.inside", build.inside, "needs motion.plane = false, as [[walls]] do")
         return
     try:
-        fill_inside(case)
+        fill_inside(case, build)
     except CaseError as error:
         yield error
 
 
 def _fill(case: Case, build: FillSection) -> Iterator[CaseError]:
-    most = fill_most(case)
+    most = fill_most(case, build)
     if build.number is not None and build.most is not None:
         yield CaseError("build.number", build.number, "excludes build.most; give only one of the two")
     elif build.number is not None and 0 < most < build.number:
@@ -160,7 +161,7 @@ def _fill(case: Case, build: FillSection) -> Iterator[CaseError]:
 
 def _empty(case: Case, build: FillSection) -> CaseError:
     """A wall that holds no grain, and why it may be."""
-    enclosure, least = enclosure_of(case), room(case) * (1.0 + build.gap)
+    enclosure, least = enclosure_of(case, build), room(case) * (1.0 + build.gap)
     across = " x ".join(f"{one:.3g}" for one in enclosure.high - enclosure.low)
     whole = ", the cell of a sieve curve as a whole" if graded(case) else ""
     text = (
@@ -188,7 +189,7 @@ def _flume(case: Case, build: FlumeSection) -> Iterator[CaseError]:
     ):
         if value is not None and value < least:
             yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
-    if flume_count(case) < 1:
+    if flume_count(case, build) < 1:
         yield CaseError("build.layers", build.layers, "gives no grain; take more layers or a longer flume")
     yield from _waves(case, build)
 

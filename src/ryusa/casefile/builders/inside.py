@@ -40,15 +40,14 @@ class CellsInside:
     free: Floats
 
 
-def enclosure_of(case: Case) -> Enclosure:
+def enclosure_of(case: Case, build: FillSection) -> Enclosure:
     """The inside of the wall that builder 'fill' names.
 
     Raises
     ------
     CaseError : there is no such wall, it has no inside, or its mesh does not say what is inside.
     """
-    build = case.build
-    assert isinstance(build, FillSection) and build.inside is not None
+    assert build.inside is not None
     names = [wall.name for wall in case.walls]
     if build.inside not in names:
         allowed = f"must be one of [[walls]]: {', '.join(names) or 'there is none'}"

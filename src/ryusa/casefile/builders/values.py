@@ -115,12 +115,12 @@ def built_counts(case: Case) -> tuple[int, int, bool]:
         n_fixed = box_plan(build, sizes(case)[0], room(case), case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
-        return fill_count(case), plate_count(case, build.plate), True
+        return fill_count(case, build), plate_count(case, build.plate), True
     if isinstance(build, StreamSection):
         return stream_count(case), 0, True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
-        return flume_count(case), bed[0] * bed[1], True
+        return flume_count(case, build), bed[0] * bed[1], True
     assert isinstance(build, PackingSection)
     return build.columns * build.rows * build.layers, bed[0] * bed[1], True
 
@@ -201,20 +201,17 @@ def _side_by_side(case: Case, build: FlumeSection) -> tuple[int, int]:
     return max(int(build.length / d * (1.0 + 1e-9)), 1), max(int((build.width or d) / d * (1.0 + 1e-9)), 1)
 
 
-def flume_count(case: Case) -> int:
+def flume_count(case: Case, build: FlumeSection) -> int:
     """Free grains of a flume; of several sizes as many as have the volume of those layers."""
-    assert isinstance(case.build, FlumeSection)
-    n_x, n_y = _side_by_side(case, case.build)
+    n_x, n_y = _side_by_side(case, build)
     each = reference_diameter(case) ** 3 / laid_mean_cube(case) if graded(case) else 1.0
-    return round(case.build.layers * n_x * n_y * each)
+    return round(build.layers * n_x * n_y * each)
 
 
-def fill_cells(case: Case) -> tuple[int, int, int]:
+def fill_cells(case: Case, build: FillSection) -> tuple[int, int, int]:
     """Cells of the lattice of builder 'fill' along x, y and z, in its box or round its wall."""
-    build = case.build
-    assert isinstance(build, FillSection)
     if build.inside is not None:
-        return fill_inside(case).grid.shape
+        return fill_inside(case, build).grid.shape
     pitch = room(case) * (1.0 + build.gap)
     x, y, z = (
         max(int((high - low) / pitch * (1.0 + 1e-9)), 0) for low, high in zip(*fill_box(build), strict=True)
@@ -228,22 +225,19 @@ def fill_box(build: FillSection) -> tuple[Corner, Corner]:
     return build.low, build.high
 
 
-def fill_inside(case: Case) -> CellsInside:
+def fill_inside(case: Case, build: FillSection) -> CellsInside:
     """Cells of builder 'fill' in the wall that it names; of a sieve curve, those that lie inside wholly."""
-    build = case.build
-    assert isinstance(build, FillSection)
     pitch = room(case) * (1.0 + build.gap)
-    return cells_inside(enclosure_of(case), pitch, room(case), graded(case))
+    return cells_inside(enclosure_of(case, build), pitch, room(case), graded(case))
 
 
-def fill_count(case: Case) -> int:
+def fill_count(case: Case, build: FillSection) -> int:
     """Free grains of builder 'fill': as many as fit, or fewer if asked for."""
-    build, held = case.build, fill_most(case)
-    assert isinstance(build, FillSection)
+    held = fill_most(case, build)
     return min(held, build.number or build.most or held)
 
 
-def fill_most(case: Case) -> int:
+def fill_most(case: Case, build: FillSection) -> int:
     """Grains that builder 'fill' can lay; of several sizes what its cells hold, halved for smaller ones.
 
     Notes
@@ -252,10 +246,8 @@ def fill_most(case: Case) -> int:
     up to two grains from the share of a level, and the grains of a level are rounded up to a whole cell of
     the next: together less than `_ROUNDED` cells for each material.
     """
-    build = case.build
-    assert isinstance(build, FillSection)
     inside = build.inside is not None
-    cells = len(fill_inside(case).numbers) if inside else math.prod(fill_cells(case))
+    cells = len(fill_inside(case, build).numbers) if inside else math.prod(fill_cells(case, build))
     if not graded(case):
         return cells
     laid = laid_shares(case.grains, case.build)

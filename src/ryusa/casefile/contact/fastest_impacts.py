@@ -129,7 +129,7 @@ def _fall_speed(case: Case, derived: Derived) -> float:
     if isinstance(build, FillSection):
         pitch = room(case) * (1.0 + build.gap)
         loose = math.pi / 6.0 * derived.d**3 / pitch**3
-        heights.append(pitch * fill_cells(case)[2] * (1.0 - loose / POURED))
+        heights.append(pitch * fill_cells(case, build)[2] * (1.0 - loose / POURED))
     elif isinstance(build, BoxSection | PackingSection | FlumeSection):
         below = build.height if isinstance(build, BoxSection) else 0.0
         heights.append(below + build.layers * build.gap * room(case))

@@ -57,9 +57,10 @@ def check_overlap(case: Case, derived: Derived, data: dict[str, Any]) -> Iterato
 
 def _at_rest(case: Case, derived: Derived) -> tuple[float, str]:
     """Overlap over d of the lowest layer at rest [-], and where it comes from; 0 where there is none."""
-    if not isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
+    build = case.build
+    if not isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):
         return 0.0, ""
-    layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
+    layers = fill_cells(case, build)[2] if isinstance(build, FillSection) else build.layers
     weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
     origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case.contact) else 'over k_n d'}"
     origin += "" if adhesion(case.contact) is Adhesion.NONE else ", with adhesion"
