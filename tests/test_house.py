@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from fnmatch import fnmatch
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,26 @@ def test_the_walls_between_rooms_hold() -> None:
         pytest.skip("import-linter is not installed")
     done = subprocess.run([linter, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_modules_import_each_other_in_a_circle_not_even_as_types() -> None:
+    names = {
+        ".".join(path.relative_to(root.parent).with_suffix("").parts).removesuffix(".__init__"): path
+        for root in (SOURCE, STUDIES)
+        for path in root.rglob("*.py")
+    }
+    imported: dict[str, set[str]] = {}
+    for name, path in names.items():
+        found: set[str] = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module is not None:
+                parts = {f"{node.module}.{one.name}" for one in node.names}
+                found |= {one if one in names else node.module for one in parts}
+            elif isinstance(node, ast.Import):
+                found |= {one.name for one in node.names}
+        imported[name] = (found & names.keys()) - {name}
+    assert sum(map(len, imported.values())) > 3000
+    TopologicalSorter(imported).prepare()  # a CycleError names the circle
 
 
 def test_no_file_of_the_source_is_too_long() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from ryusa.casefile import Case, derive, disk_needed, explain, frames_expected, read, resolved, steps_expected
 from ryusa.casefile.estimate import BYTES_PER_GRAIN, disk_for_events, events_expected, memory_needed
-from ryusa.casefile.record import events_of
+from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.values import water_alone
 from ryusa.errors import CaseError
 from ryusa.laws import collision

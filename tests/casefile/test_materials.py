@@ -9,7 +9,7 @@ import pytest
 from ryusa.build import build
 from ryusa.casefile.derive import derive
 from ryusa.casefile.explain import explain
-from ryusa.casefile.materials import case_of_pair, meeting
+from ryusa.casefile.materials.values import case_of_pair, meeting
 from ryusa.casefile.read import json_schema, read_text
 from ryusa.casefile.resolved import resolved
 from ryusa.engine.cpu.engine import CpuEngine

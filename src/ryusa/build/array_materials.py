@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.casefile.materials import GRAINS, MOST
+from ryusa.casefile.materials.checks import MOST
+from ryusa.casefile.materials.values import GRAINS
 from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.laws.families import Adhesion, ContactForce, ContactTiming, Rolling

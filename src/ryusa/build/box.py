@@ -8,8 +8,8 @@ from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
 from ryusa.casefile.builders.schema import BoxSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.grains import graded
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 

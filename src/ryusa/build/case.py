@@ -38,7 +38,6 @@ from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, walls_of, w
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import (
     adhesion,
@@ -48,15 +47,15 @@ from ryusa.casefile.contact.values import (
     may_pull,
     timing,
 )
-from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.derive import derive
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.films import film_reach
-from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
-from ryusa.casefile.motion import slab_width
-from ryusa.casefile.record import events_of
-from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.grains.values import slab_width
+from ryusa.casefile.materials.values import GRAINS, case_of_pair, names_of
+from ryusa.casefile.record.time import steps_by_default
+from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.shape import extent, has_clumps
-from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.casefile.without_effect import notes_without_effect
 from ryusa.errors import CaseError
@@ -141,7 +140,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
 def _built(case: Case, found: Derived) -> Built:
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
-    key = key_of(case)
+    key = key_of(case.build)
     reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
     refuse_overlaps(reach, key, case.motion.plane)
     walls = (*walls_of(case), *stream_walls(case))
@@ -150,7 +149,7 @@ def _built(case: Case, found: Derived) -> Built:
     _refuse_unknown_groups(placement, case)
     laws = replace(
         laws_of(case, found, placement.z_zero),
-        column=None if row_keys(case) is not None else column_of(case, found, placement),
+        column=None if case.row is not None else column_of(case, found, placement),
         row=row_of(case, found, placement),
     )
     placement, traffic = with_feeds(placement, case, found)
@@ -207,7 +206,7 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
     """The same scene with the materials of a case, `of` by id without faces; as it is where there is one."""
     if not len(of):
         return scene
-    names, walls = names_of(case), scene.walls
+    names, walls = names_of(case.materials), scene.walls
     if walls is not None:
         of_case = [names.index(one.material or GRAINS) for one in case.walls]
         others = walls.names[len(of_case) :]  # bottom and dams of a stream
@@ -223,7 +222,7 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
 def contact_of(case: Case, derived: Derived) -> ContactLaw:
     """Contact law of a case."""
     found, contact = derived, case.contact
-    if is_hertz(case):
+    if is_hertz(case.contact):
         return hertz_law(case)
     constants = math.isnan(found.e_n)
     return ContactLaw(
@@ -240,10 +239,10 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         eta_s=found.fixed.eta_s if constants else 0.0,
         slip=Slip.of(contact.slip),
         cap=chosen(case, Cap),
-        tension=may_pull(case),
+        tension=may_pull(case.contact),
         timing=timing(case),
-        adhesion=adhesion(case),
-        adhesion_amount=adhesion_amount(case),
+        adhesion=adhesion(case.contact),
+        adhesion_amount=adhesion_amount(case.contact),
     )
 
 
@@ -276,7 +275,7 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
         nu=water.viscosity,
         rho_w=water.density,
         drag=Drag.of(water.drag),
-        drag_of_form=DragOfForm.of(water.drag_of_form) if has_clumps(case) else DragOfForm.SPHERE,
+        drag_of_form=DragOfForm.of(water.drag_of_form) if has_clumps(case.grains) else DragOfForm.SPHERE,
         c_d=water.drag_coefficient,
         a_2=water.shape_area,
         c_m=water.added_mass,
@@ -309,10 +308,10 @@ def notes_of(case: Case) -> tuple[str, ...]:
     notes: list[str] = []
     contact, water = case.contact, case.water
     if water is not None and water_alone(case):
-        if water.roughness is None and column_keys(case).bed == "rough":
+        if water.roughness is None and case.column.bed == "rough":
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
         return (*notes, *_column_notes(case))
-    elastic = is_hertz(case)
+    elastic = is_hertz(case.contact)
     if elastic:
         notes += _elastic_notes(case)
     elif contact.shear_ratio is None and contact.shear_stiffness is None:
@@ -323,10 +322,10 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if key not in contact.model_fields_set and not (key == "parting" and elastic):
             notes.append(f"{what}: {getattr(contact, key)} (contact.{key} not given)")
     if water is not None:
-        bed = column_keys(case).bed if water.profile == "column" else ""
+        bed = case.column.bed if water.profile == "column" else ""
         if water.roughness is None and (water.profile == "log rough" or bed == "rough"):
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
-        if water.depth is None and row_keys(case) is None:
+        if water.depth is None and case.row is None:
             notes.append("water of unlimited depth (water.depth not given)")
         notes += [
             f"{what}: {getattr(water, key)}{unit} (water.{key} not given)"
@@ -359,7 +358,7 @@ def _elastic_notes(case: Case) -> list[str]:
 
 
 def _column_notes(case: Case) -> list[str]:
-    keys = column_keys(case)
+    keys = case.column
     notes = [
         f"{what}: {getattr(keys, key)} (water.column.{key} not given)"
         for key, what in (("bed", "lower boundary of the water"), ("drive", "driver of the water"))

@@ -8,9 +8,9 @@ import numpy as np
 
 from ryusa.build.assemble import gravity
 from ryusa.casefile.case import Case
-from ryusa.casefile.record import ChangeSection
+from ryusa.casefile.record.schema import ChangeSection
 from ryusa.casefile.row.ends import per_width
-from ryusa.casefile.walls import MoveSection
+from ryusa.casefile.walls.schema import MoveSection
 from ryusa.errors import CaseError
 from ryusa.model import Scene
 from ryusa.model.walls import AXIS_POINT, PHASE, RATE, SPIN, SURFACE, SWING, TURN, VELOCITY, carried_on

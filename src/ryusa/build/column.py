@@ -11,9 +11,9 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.checks import SPARE
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import CELL, column_keys
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.motion import slab_width
+from ryusa.casefile.column.schema import CELL
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import slab_width
 from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
@@ -48,7 +48,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
     if water is None or water.profile != "column" or water_alone(case) or stream(case):
         return None
     assert water.depth is not None
-    keys = column_keys(case)
+    keys = case.column
     z_bed = zero_of(case, placement.z_zero)
     dz = keys.cell or CELL * found.d
     z_low = keys.bottom if keys.bottom is not None else min(bottom_of(placement), z_bed)

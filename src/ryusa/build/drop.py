@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.build.placement import LANE, Placement, Wall, at_rest
 from ryusa.casefile.builders.schema import DropSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
 
 GAP = 0.1  # first gap when only a speed is given, in diameters

@@ -6,7 +6,7 @@ from ryusa.build.placement import Placement, at_rest
 from ryusa.casefile.builders.schema import EmptySection
 from ryusa.casefile.builders.values import plate_of
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 
 
 def empty(case: Case, derived: Derived) -> Placement:

@@ -10,11 +10,11 @@ from ryusa.build.placement import Placement, at_rest
 from ryusa.build.reach import reach_feed
 from ryusa.build.sizes import draw
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.feeds.schema import ExitSection, FeedSection
 from ryusa.casefile.feeds.values import fed_amount, fed_count, feed_begin, feed_end, sedigraph_of, unit_of
-from ryusa.casefile.grains import mass, sized_as
-from ryusa.casefile.materials import of_material
+from ryusa.casefile.grains.values import mass, sized_as
+from ryusa.casefile.materials.values import of_material
 from ryusa.casefile.row.reach_source import fed_by_reach
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic

@@ -17,8 +17,8 @@ from ryusa.casefile.builders.values import (
     plate_of,
 )
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.grains import graded
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -34,19 +34,19 @@ def fill(case: Case, derived: Derived) -> Placement:
     if keys.inside is not None:
         return _inside(case, keys, derived, rng)
     pitch = derived.room * (1.0 + keys.gap)
-    n_x, n_y, n_z = fill_cells(case)
+    n_x, n_y, n_z = fill_cells(case, keys)
     low, high = (np.array(one) for one in fill_box(keys))
     corner = 0.5 * (low + high - pitch * np.array([n_x, n_y, n_z]))
     corner[2] = low[2]
     sized: Floats | None = None
     if not graded(case):
         cells = np.stack(np.meshgrid(np.arange(n_z), np.arange(n_y), np.arange(n_x), indexing="ij"), -1)
-        cells = cells.reshape(-1, 3)[: fill_count(case), ::-1]
+        cells = cells.reshape(-1, 3)[: fill_count(case, keys), ::-1]
         free = 0.5 * keys.jitter * keys.gap * derived.room
         x = corner + (cells + 0.5) * pitch
         x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
     else:
-        sized = draw_laid(case, fill_count(case), rng)
+        sized = draw_laid(case, fill_count(case, keys), rng)
         block = LatticeCells((pitch, pitch, pitch), n_x, n_y)
         x = corner + nested_lattice(
             sized * extent(case), block, keys.gap, keys.jitter, case.motion.plane, rng
@@ -60,7 +60,7 @@ def fill(case: Case, derived: Derived) -> Placement:
 
 def _inside(case: Case, keys: FillSection, derived: Derived, rng: np.random.Generator) -> Placement:
     """Lattice in a wall; a grain near it is displaced by as much as keeps it whole inside."""
-    laid, n = fill_inside(case), fill_count(case)
+    laid, n = fill_inside(case, keys), fill_count(case, keys)
     grid, open_ = laid.grid, (math.inf, math.inf)
     if graded(case):
         sized = draw_laid(case, n, rng)

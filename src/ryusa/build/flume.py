@@ -12,10 +12,9 @@ from ryusa.casefile.builders.values import bed_counts, flume_count
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import graded
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -36,7 +35,7 @@ def flume(case: Case, derived: Derived) -> Placement:
     if not graded(case):
         x = _lattice(case, keys, rng, cells, derived.room)
     else:
-        sized = draw_laid(case, flume_count(case), rng)
+        sized = draw_laid(case, flume_count(case, keys), rng)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
@@ -72,7 +71,7 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
     base : height from which loose grains fill the bed [m].
     crest : mean top of the fixed grains [m]; None over a plane.
     """
-    keys = column_keys(case)
+    keys = case.column
     if case.water is None or case.water.profile != "column" or keys.bed != "moving":
         if keys.bottom is not None:
             return keys.bottom, "at water.column.bottom"
@@ -120,7 +119,7 @@ def _lattice(
 ) -> Floats:
     """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
     pitch = np.array(cells.pitch)
-    chosen = np.sort(filled_cells(flume_count(case), cells, rng))
+    chosen = np.sort(filled_cells(flume_count(case, keys), cells, rng))
     free = 0.5 * keys.jitter * np.maximum(pitch - room, 0.0)
     x = (places(chosen, cells) + 0.5) * pitch
     return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * free)

@@ -21,7 +21,7 @@ from ryusa.build.feeds import before_feeding, moving_with, steps_between
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, with_room, with_walls
-from ryusa.casefile.time import steps_of_law
+from ryusa.casefile.record.time import steps_of_law
 from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.laws.families import Cap, ContactForce, ContactTiming, Slip

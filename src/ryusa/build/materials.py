@@ -7,7 +7,7 @@ from ryusa.build.placement import Placement
 from ryusa.build.sizes import laid_materials
 from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.case import Case
-from ryusa.casefile.materials import GRAINS, density, names_of
+from ryusa.casefile.materials.values import GRAINS, density, names_of
 from ryusa.model import Traffic
 from ryusa.model.scene import Floats
 
@@ -24,11 +24,11 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
     """
     if not case.materials:
         return np.zeros(0, np.int8)
-    names = names_of(case)
+    names = names_of(case.materials)
     of = np.zeros(len(placement.d) + len(placement.d_fixed) + len(placement.walls), np.int8)
     for name, which in laid_materials(case, n_first):
         of[which] = names.index(name)
-    made = made_of(case)
+    made = made_of(case.build)
     for group, begin, n in placement.free_groups:
         if group in made:
             of[begin : begin + n] = names.index(made[group])
@@ -42,4 +42,4 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
 
 def densities(case: Case, of: Numbers) -> Floats:
     """Density of each grain [kg/m3]."""
-    return np.array([density(case, name) for name in names_of(case)])[of]
+    return np.array([density(case, name) for name in names_of(case.materials)])[of]

@@ -9,9 +9,9 @@ from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import PackingSection
 from ryusa.casefile.builders.values import bed_counts
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import graded
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 

@@ -11,14 +11,13 @@ from ryusa.build.reach import reach_end
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import discharge_of, hydrograph_of, levels_of, stage_of, width_of
 from ryusa.casefile.row.reach import END
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import RowEndSection, row_keys
+from ryusa.casefile.row.schema import RowEndSection
 from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, row_plan, segments_of, stream
 from ryusa.errors import CaseError
 from ryusa.laws.families import (
@@ -52,7 +51,7 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
     ------
     CaseError : the row cannot be.
     """
-    keys, wet = row_keys(case), case.water
+    keys, wet = case.row, case.water
     if keys is None or wet is None:
         return None
     if (column := column_of(case, derived, placement)) is not None:
@@ -78,7 +77,7 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
 def _among_grains(case: Case, column: Column, period: float) -> ColumnRow:
     """A periodic row over a bed of grains, with the surface of one column over the same bed."""
     x_low, dx, n = segments_of(case)
-    g_z = case.motion.gravity * math.cos(slope(case))
+    g_z = case.motion.gravity * math.cos(slope(case.motion))
     bottom = np.full(n, column.z_low)
     row = ColumnRow(column, dx, bottom, g_z, x_low=x_low, start=np.full(n, column.z_surface))
     if faults := row.refuses():
@@ -90,7 +89,7 @@ def _among_grains(case: Case, column: Column, period: float) -> ColumnRow:
 
 def _column(case: Case, derived: Derived, plan: RowPlan) -> Column:
     """The column of every station, its heights over the bottom."""
-    wet, keys = case.water, column_keys(case)
+    wet, keys = case.water, case.column
     assert wet is not None
     deepest = max(float((plan.start - plan.bottom).max()), 0.5 * plan.cell)
     grains = stream(case)
@@ -140,7 +139,7 @@ def _end(case: Case, end: RowEndSection | None) -> RowEnd | None:
 
 def _dams(case: Case, plan: RowPlan) -> tuple[np.ndarray | None, PorousSolid | None, tuple[RowDam, ...]]:
     """Solid cells of the segments, the porous solid in them, and the dams by name."""
-    keys, wet = row_keys(case), case.water
+    keys, wet = case.row, case.water
     assert keys is not None and wet is not None
     solid = np.zeros(plan.n, np.int64)
     porous: list[tuple[Floats, float]] = []

@@ -5,7 +5,7 @@ import numpy as np
 from ryusa.build.placement import LANE, Placement, at_rest
 from ryusa.casefile.builders.schema import SaltationSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.water.values import water_speed
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import CUT, has_own_sizes, sized_as, spread_of
+from ryusa.casefile.grains.schema import spread_of
+from ryusa.casefile.grains.values import CUT, has_own_sizes, sized_as
 from ryusa.model.scene import Floats
 
 _STREAM = 0x4D415445  # tells the materials of grains from their sizes
@@ -27,7 +28,7 @@ def laid_materials(case: Case, n: int) -> list[tuple[str, NDArray[np.int64]]]:
 
 def draw_laid(case: Case, n: int, rng: np.random.Generator) -> Floats:
     """Diameters [m] of the n grains that the builder lays, each by its material."""
-    if not any(has_own_sizes(case, name) for name in case.grains.mixture):
+    if not any(has_own_sizes(case.materials, name) for name in case.grains.mixture):
         return draw(case, n, rng)
     d, rest = np.zeros(n), np.ones(n, np.bool_)
     for name, which in laid_materials(case, n):

@@ -15,10 +15,9 @@ from ryusa.casefile.builders.schema import StreamSection
 from ryusa.casefile.builders.table import bed_of_run
 from ryusa.casefile.builders.values import stream_cells, stream_count, stream_thickness
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.grains import graded
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.row.ends import width_of
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import bottom_points, crest_of, dam_span, row_plan, stream
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
@@ -36,7 +35,7 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
     assert width is not None
     points, ends = bottom_points(case), _ends(case, keys, width)
     period = (math.inf, math.inf if keys.walls else width)
-    if (bed := bed_of_run(case)) is not None:
+    if (bed := bed_of_run(case.build)) is not None:
         return replace(first_grains(case, bed.run, True), walls=ends, period=period)
     rng = np.random.default_rng(case.seed)
     n = stream_count(case)
@@ -56,7 +55,7 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
 
 def _ends(case: Case, keys: StreamSection, width: float) -> tuple[Wall, ...]:
     """Planes at the ends of the stream and at its sides."""
-    row, points = row_keys(case), bottom_points(case)
+    row, points = case.row, bottom_points(case)
     assert row is not None
     ends = [Wall(SCREEN, (points[0][0], 0.0, 0.0), (1.0, 0.0, 0.0))]
     if row.downstream is not None and row.downstream.end == "wall":
@@ -81,7 +80,7 @@ def stream_walls(case: Case) -> tuple[SolidWall, ...]:
 
     A dam stands from border to border of its segments, as it does for the water.
     """
-    row = row_keys(case)
+    row = case.row
     if not stream(case) or row is None or (width := width_of(case)) is None:
         return ()
     points, plan = bottom_points(case), row_plan(case)

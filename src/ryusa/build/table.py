@@ -9,7 +9,7 @@ from ryusa.build.placement import Placement, Wall
 from ryusa.casefile.builders.schema import FromFile, RunSection
 from ryusa.casefile.builders.table import densities_of_file, key_of, period_of, table_of
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.errors import CaseError
 from ryusa.formats.grains import GrainTable
 from ryusa.laws.drag import volume
@@ -39,7 +39,7 @@ def first_grains(case: Case, run: str | None, allow_overlap: bool) -> Placement:
     """
     grid = table_of(case)
     assert grid is not None
-    key = key_of(case)
+    key = key_of(case.build)
     if case.motion.plane:
         for name in ("vy", "wx", "wz"):
             if np.any(grid.column(name)):

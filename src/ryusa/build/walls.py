@@ -14,8 +14,8 @@ from ryusa.build.placement import ROOM_BELOW, Placement
 from ryusa.build.servo import Servo, servo_rows
 from ryusa.build.wall_checks import refuse_wide_round_faces
 from ryusa.casefile.case import Case
-from ryusa.casefile.mesh import mesh_of
-from ryusa.casefile.walls import WallSection
+from ryusa.casefile.walls.mesh import mesh_of
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
 from ryusa.formats.mesh import MOST_TRIANGLES
 from ryusa.model import FaceKind, Scene, Walls
@@ -257,7 +257,7 @@ def walls_of(case: Case) -> tuple[SolidWall, ...]:
 def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
     at = wall.at or (0.0, 0.0, 0.0)
     if wall.shape == "mesh":
-        made = triangles(wall.name, mesh_of(case, wall, key).corners)
+        made = triangles(wall.name, mesh_of(case.folder, wall, key).corners)
     elif wall.sides is not None and wall.number is not None:
         made = ridges(wall.name, at, *wall.sides, wall.number, wall.height or 0.0)
     elif wall.sides is not None:

@@ -2,8 +2,9 @@
 
 Every unit and range is checked here. Each subject (grains, contact, motion, domain, water, films, column,
 builders, time, record) has its keys, its checks, its derived values and its rows of `ryusa check` in one
-module, or in a package of `schema`, `checks`, `values` and `rows`. `Case` puts the keys together; `derive`,
-`explain`, `estimate`, `checks` and `read` stand above it, and no subject imports them.
+module, or in a package of `schema`, `checks`, `values` and `rows`. `case.py` puts the keys together and
+imports nothing else of a subject; `facts.py` holds what follows, frozen. `derive`, `explain`, `estimate`,
+`checks` and `read` stand above the subjects, and no subject imports them.
 
 >>> from ryusa import casefile
 >>> case = casefile.read("case.toml")  # doctest: +SKIP
@@ -13,12 +14,13 @@ module, or in a package of `schema`, `checks`, `values` and `rows`. `Case` puts 
 """
 
 from ryusa.casefile.case import Case
-from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.derive import derive
 from ryusa.casefile.estimate import disk_needed, frames_expected
 from ryusa.casefile.explain import explain
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.keys import all_keys, described
 from ryusa.casefile.read import json_schema, json_schema_text, read, read_text
-from ryusa.casefile.record import ChangeSection
+from ryusa.casefile.record.schema import ChangeSection
 from ryusa.casefile.resolved import resolved
 from ryusa.casefile.wall_time import steps_expected
 

@@ -6,18 +6,18 @@ from typing import Annotated
 from pydantic import Field, PrivateAttr
 
 from ryusa.casefile.builders.schema import BuildSection
+from ryusa.casefile.column.schema import ColumnSection
 from ryusa.casefile.contact.schema import ContactSection, RollingSection
 from ryusa.casefile.domain import DomainSection, PlaneSection
 from ryusa.casefile.feeds.schema import ExitSection, FeedSection
-from ryusa.casefile.forms import FormSection
-from ryusa.casefile.grains import GrainsSection
-from ryusa.casefile.materials import MaterialSection, PairSection
+from ryusa.casefile.grains.schema import FormSection, GrainsSection
+from ryusa.casefile.materials.schema import MaterialSection, PairSection
 from ryusa.casefile.motion import MotionSection
 from ryusa.casefile.quantities import Count, Name
-from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
+from ryusa.casefile.record.schema import ChangeSection, RecordSection, StopSection, TimeSection
+from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.section import Section
-from ryusa.casefile.time import TimeSection
-from ryusa.casefile.walls import WallSection
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.catalogue import load
 from ryusa.notebook import html_table
@@ -64,6 +64,16 @@ class Case(Section):
     _overrides: dict[str, str] = PrivateAttr(default_factory=lambda: {})
 
     @property
+    def column(self) -> ColumnSection:
+        """Keys of [water.column], all defaults where the case leaves the table out."""
+        return (self.water and self.water.column) or ColumnSection()
+
+    @property
+    def row(self) -> RowSection | None:
+        """Keys of [water.row]; None where the case has no row."""
+        return None if self.water is None else self.water.row
+
+    @property
     def text(self) -> str:
         """The case file as the user wrote it, without overrides."""
         return self._text
@@ -72,6 +82,11 @@ class Case(Section):
     def path(self) -> Path | None:
         """File the case was read from; None for a case given as text."""
         return self._path
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the case file; the current one for a case given as text."""
+        return (self._path.parent if self._path is not None else Path()).resolve()
 
     @property
     def overrides(self) -> dict[str, str]:

@@ -4,35 +4,39 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from ryusa.casefile.builders.checks import check_builder, check_fill
+from ryusa.casefile.builders.checks import check_builder, check_domain, check_fill
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import check_choices
 from ryusa.casefile.column.checks import check_column
 from ryusa.casefile.contact.checks import check_contact, check_expected_speed, check_rolling
 from ryusa.casefile.contact.impact import check_overlap
 from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
-from ryusa.casefile.derive import Derived, derive
-from ryusa.casefile.domain import check_domain, check_planes
+from ryusa.casefile.derive import derive
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.feeds.checks import check_traffic
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.grading import check_grading
-from ryusa.casefile.grains import RIVALS as GRAINS_RIVALS
-from ryusa.casefile.material_sizes import check_sizes
-from ryusa.casefile.materials import check_materials
+from ryusa.casefile.grains.schema import RIVALS as GRAINS_RIVALS
+from ryusa.casefile.materials.checks import check_materials
+from ryusa.casefile.materials.sizes import check_sizes
 from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
-from ryusa.casefile.precision import check_precision
-from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
+from ryusa.casefile.record.checks import (
+    check_frames,
+    check_precision,
+    check_record,
+    check_stop,
+    check_timeline,
+)
+from ryusa.casefile.record.schema import RIVALS as TIME_RIVALS
+from ryusa.casefile.record.time import check_time
 from ryusa.casefile.row.checks import check_row
 from ryusa.casefile.row.hydrograph import check_hydrograph
 from ryusa.casefile.row.reach_checks import check_reach, check_unlike_reach
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import check_shape
-from ryusa.casefile.time import RIVALS as TIME_RIVALS
-from ryusa.casefile.time import check_time
-from ryusa.casefile.walls import check_meshes, check_walls
+from ryusa.casefile.walls.checks import check_meshes, check_planes, check_walls
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
 from ryusa.casefile.without_effect import check_without_effect
@@ -53,7 +57,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
 
     Checks that need derived numbers come last: these exist only for a case without contradictions.
     """
-    if case.build.kind == "stream" and row_keys(case) is None:
+    if case.build.kind == "stream" and case.row is None:
         text = "needs [water.row], whose bottom is the floor of its grains; without it take another builder"
         return [*_rivals(case), CaseError("build.kind", "stream", text)]
     unsized = [*check_grading(case), *check_sizes(case), *check_shape(case), *check_reach(case)]
@@ -64,19 +68,19 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *_rivals(case),
         *check_choices(case),
         *check_contact(case),
-        *check_stop(case),
+        *check_stop(case.stop, case.build),
         *check_water(case),
         *check_column(case),
         *check_row(case),
         *check_hydrograph(case),
         *check_films(case),
         *check_rolling(case),
-        *check_motion(case),
+        *check_motion(case.motion, case.timeline),
         *check_planes(case),
         *check_walls(case),
         *check_builder(case),
         *check_traffic(case),
-        *check_timeline(case, data),
+        *check_timeline(case.timeline, case.stop, data),
         *check_materials(case),
         *check_precision(case),
     ]

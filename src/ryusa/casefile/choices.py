@@ -5,9 +5,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import timing
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps
@@ -38,8 +36,8 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
         Arm.REDUCED_RADIUS if "spring" in Rolling.of(case.rolling.model).marks else Arm.CONTACT_WIDTH
     ),
     # a deposit may lie anywhere in a stream, and the length counts from its top
-    Mixing: lambda case: Mixing.LI_SAWAMOTO if stream(case) else Mixing.of(column_keys(case).mixing),
-    SurfaceRule: lambda case: SurfaceRule.VOLUME if row_keys(case) is not None else SurfaceRule.DEPTH,
+    Mixing: lambda case: Mixing.LI_SAWAMOTO if stream(case) else Mixing.of(case.column.mixing),
+    SurfaceRule: lambda case: SurfaceRule.VOLUME if case.row is not None else SurfaceRule.DEPTH,
     Start: lambda case: (
         Start.REST
         if water_alone(case) or stream(case) or (case.water and case.water.drag == "none")
@@ -47,7 +45,7 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     ),
 }
 _ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind
-    DragOfForm: lambda case: has_clumps(case) and case.water is not None and case.water.drag != "none"
+    DragOfForm: lambda case: has_clumps(case.grains) and case.water is not None and case.water.drag != "none"
 }
 _ONLY_WITH: dict[type[Family], str] = {Above: "depth", SideWalls: "side_walls"}  # another key of the section
 
@@ -62,7 +60,7 @@ def chosen(case: Case, family: type[F]) -> F:
 def section_of(case: Case, family: type[Family]) -> Section | None:
     """The section of a case that holds the key of a family; None in a dry case."""
     top, *below = family.key.split(".")[:-1]
-    return column_keys(case) if below and case.water is not None else getattr(case, top)
+    return case.column if below and case.water is not None else getattr(case, top)
 
 
 def in_force(case: Case) -> dict[type[Family], Family]:

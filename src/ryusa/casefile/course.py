@@ -4,16 +4,13 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache, partial
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
 
 from ryusa.casefile.files import RelativePath, contents, inside
 from ryusa.errors import CaseError
 from ryusa.formats.series import read_series
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 MOST_POINTS = 10_000
 
@@ -30,7 +27,7 @@ Points = Sequence[tuple[float, Any]]
 
 
 def points_of(
-    case: "Case", key: str, given: Points | str, column: str, read: Callable[[str], Any], example: str
+    folder: Path, key: str, given: Points | str, column: str, read: Callable[[str], Any], example: str
 ) -> Points:
     """Points of a course as given, or as its file holds them; `column` and `example` as of `read_series`.
 
@@ -42,7 +39,7 @@ def points_of(
         return given
 
     reader = partial(_read, column=column, read=read, example=example)
-    return contents(case, key, given, inside(case, key, given), reader)
+    return contents(folder, key, given, inside(folder, key, given), reader)
 
 
 @lru_cache(maxsize=16)

@@ -1,15 +1,12 @@
 """What follows from a case: masses, stiffness, damping, time step, friction velocity."""
 
 import math
-from dataclasses import dataclass
 
 from ryusa.casefile.builders.table import lightest_in_file
 from ryusa.casefile.builders.values import counts, room, sizes
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.column.values import column_u_star
 from ryusa.casefile.contact.values import (
-    PairValues,
     friction,
     is_hertz,
     pair_values,
@@ -18,51 +15,16 @@ from ryusa.casefile.contact.values import (
     step_limit,
     stiffness,
 )
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.films import step_limits
-from ryusa.casefile.grains import mass
-from ryusa.casefile.materials import lightest_of, meeting, smallest_of
+from ryusa.casefile.grains.values import mass
+from ryusa.casefile.materials.values import lightest_of, meeting, smallest_of
 from ryusa.casefile.motion import slope
+from ryusa.casefile.record.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.row.values import stream, water_alone, water_step
 from ryusa.casefile.shape import least_mass, spheres_per_grain
-from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
 from ryusa.laws import drag, water
-
-
-@dataclass(frozen=True)
-class Derived:
-    """Numbers that follow from a case, SI."""
-
-    d: float  # mean diameter [m]
-    d_min: float
-    d_max: float
-    room: float  # diameter of the sphere that holds any free grain, as clumps reach farther [m]
-    volume: float  # of the mean grain [m3]
-    m: float  # its mass [kg]
-    m_added: float  # its added mass [kg]
-    m_weight: float  # the mass that gravity sees [kg]
-    inertia: float  # [kg m2]
-    g: float  # [m/s2]
-    slope: float  # [rad]
-    k_n: float  # [N/m]
-    k_s: float
-    mu: float  # [-]
-    e_n: float  # restitution asked for [-]; nan for constants
-    e_s: float
-    fixed: PairValues  # mean grain on a fixed one
-    free: PairValues  # two mean grains
-    n_grain: int
-    n_sphere: int  # free grains with the spheres of clumps counted one by one
-    n_fixed: int
-    meet: bool  # can two free grains meet
-    shortest: float  # shortest contact that can occur [s]
-    dt: float  # [s]
-    step_limit: float  # largest stable step in one contact [s]
-    step_limit_shear: float  # that of its tangential motion [s]
-    steps_per_contact: float
-    u_star: float  # [m/s]; nan without a log profile, and in a column that nothing drives
-    tau_star: float
-    k_rough: float  # [m]; nan without water
 
 
 def derive(case: Case) -> Derived:
@@ -70,7 +32,7 @@ def derive(case: Case) -> Derived:
     d, d_min, d_max = sizes(case)
     m, m_added, m_weight, inertia = mass(case, d)
     k_n, k_s = stiffness(case)
-    e_n, e_s, _, _ = restitution(case)
+    e_n, e_s, _, _ = restitution(case.contact)
     n_grain, n_fixed, meet = counts(case)
     pairs = [
         (lightest_of(case, a, b, both), smallest_of(case, a, b), both)
@@ -78,7 +40,7 @@ def derive(case: Case) -> Derived:
     ]
     pairs = pairs if case.materials else [(lightest_in_file(case), d_min, meet)]
     lighter = least_mass(case)
-    power = 0.4 if is_hertz(case) else 0.5  # of the mass in the duration of a contact
+    power = 0.4 if is_hertz(case.contact) else 0.5  # of the mass in the duration of a contact
     shortest = lighter**power * min(shortest_contact(one, d, both) for one, d, both in pairs)
     steps = [step_limit(one, d, both) for one, d, both in pairs]
     slower = math.sqrt(lighter)
@@ -98,7 +60,7 @@ def derive(case: Case) -> Derived:
         wet, rho_s = case.water, case.grains.density
         k_rough = wet.roughness if wet.roughness is not None else d
         row = water_alone(case) or stream(case)  # its flow follows from its ends
-        driven = wet.profile == "column" and column_keys(case).drive == "tau_star"
+        driven = wet.profile == "column" and case.column.drive == "tau_star"
         u_star = u_star_given(case)
         if wet.tau_star is not None and not driven:
             tau_star = wet.tau_star
@@ -117,10 +79,10 @@ def derive(case: Case) -> Derived:
         m_weight=m_weight,
         inertia=inertia,
         g=g,
-        slope=slope(case),
+        slope=slope(case.motion),
         k_n=k_n,
         k_s=k_s,
-        mu=friction(case),
+        mu=friction(case.contact),
         e_n=e_n,
         e_s=e_s,
         fixed=pair_values(case, d, False),

@@ -6,8 +6,9 @@ import shutil
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import is_hertz, timing
-from ryusa.casefile.derive import Derived
-from ryusa.casefile.record import MANY, events_of
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.record.schema import RecordSection
+from ryusa.casefile.record.values import MANY, events_of
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.casefile.wall_time import cells_of_row, steps_expected, time_expected, wall_time, wall_time_by_rule
@@ -48,9 +49,9 @@ def frames_expected(case: Case) -> int:
     return math.floor(time_expected(case)[0] / case.record.frames) + 2
 
 
-def bytes_per_grain(case: Case) -> int:
+def bytes_per_grain(record: RecordSection) -> int:
     """Bytes of one grain in a frame."""
-    return BYTES_PER_GRAIN + BYTES_OF_FORCES * case.record.forces
+    return BYTES_PER_GRAIN + BYTES_OF_FORCES * record.forces
 
 
 def disk_needed(case: Case, derived: Derived) -> int:
@@ -123,7 +124,7 @@ def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
         else 0
     )
     contact += CHECKPOINT_WITH_TIMING if timing(case) is ContactTiming.EXACT else 0
-    contact += CHECKPOINT_WITH_HERTZ if is_hertz(case) else 0
+    contact += CHECKPOINT_WITH_HERTZ if is_hertz(case.contact) else 0
     return n_grain * (each + contacts * contact)
 
 
@@ -137,7 +138,7 @@ def held_back(case: Case, derived: Derived) -> float:
 
 def _frame(case: Case, derived: Derived) -> int:
     """Bytes of one frame."""
-    return derived.n_sphere * bytes_per_grain(case) + BYTES_OF_ROW * cells_of_row(case)
+    return derived.n_sphere * bytes_per_grain(case.record) + BYTES_OF_ROW * cells_of_row(case)
 
 
 def memory_needed(case: Case, derived: Derived) -> int:

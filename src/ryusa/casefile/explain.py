@@ -5,21 +5,22 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.rows import column_rows, origin_of_u_star
 from ryusa.casefile.contact.impact import impact_rows
 from ryusa.casefile.contact.rows import contact_rows, damping_rows
-from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.derive import derive
 from ryusa.casefile.estimate import cost_rows
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.feeds.rows import traffic_rows
 from ryusa.casefile.films import film_rows
-from ryusa.casefile.grains import grain_rows
+from ryusa.casefile.grains.values import grain_rows
 from ryusa.casefile.laws import law_rows
-from ryusa.casefile.material_rows import material_rows
-from ryusa.casefile.precision import precision_rows
+from ryusa.casefile.materials.rows import material_rows
+from ryusa.casefile.record.time import time_rows
+from ryusa.casefile.record.values import precision_rows
 from ryusa.casefile.row.rows import row_rows
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import shape_rows
-from ryusa.casefile.time import time_rows
 from ryusa.casefile.unusual import unusual_rows
-from ryusa.casefile.walls import wall_rows
+from ryusa.casefile.walls.rows import wall_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 
 
@@ -40,7 +41,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *shape_rows(case, found),
         *traffic_rows(case),
         *contact_rows(case, found),
-        *damping_rows(case, found),
+        *damping_rows(case.contact, case.motion, found),
         *material_rows(case),
         *wall_rows(case, found),
         *fill_rows(case),

@@ -3,15 +3,12 @@
 from collections.abc import Callable
 from itertools import islice
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
 from ryusa.errors import CaseError, ParseError
 from ryusa.spelling import nearest_word
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 T = TypeVar("T")
 MOST_NAMES = 1000  # files among which a misspelt one is sought
@@ -44,30 +41,25 @@ def relative(path: str) -> str:
 RelativePath = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
 
 
-def folder_of(case: "Case") -> Path:
-    """Folder of the case file; the current one for a case given as text."""
-    return (case.path.parent if case.path is not None else Path()).resolve()
-
-
-def inside(case: "Case", key: str, name: str) -> Path:
-    """Path of a file or folder that a case names.
+def inside(folder: Path, key: str, name: str) -> Path:
+    """Path of a file or folder that the case of a folder names.
 
     Raises
     ------
     CaseError : a link leads out of the folder of the case.
     """
-    folder = folder_of(case)
     path = (folder / name).resolve()
     if not path.is_relative_to(folder):
         raise CaseError(key, name, "points outside the folder of the case file")
     return path
 
 
-def contents(case: "Case", key: str, name: str, path: Path, read: Callable[[Path, str, int, int], T]) -> T:
+def contents(folder: Path, key: str, name: str, path: Path, read: Callable[[Path, str, int, int], T]) -> T:
     """What is in a file that a case names.
 
     Parameters
     ----------
+    folder : of the case.
     key, name : of the file in the case.
     path : where it is, as `inside` gives it.
     read : reads path and name; its further arguments, the time of the last change and the size, are for the
@@ -79,7 +71,7 @@ def contents(case: "Case", key: str, name: str, path: Path, read: Callable[[Path
     """
     if not path.is_file():
         there = sorted(one.name for one in islice(path.parent.glob(f"*{path.suffix}"), MOST_NAMES))
-        allowed = f"no such file in the folder of the case, {folder_of(case)}"
+        allowed = f"no such file in the folder of the case, {folder}"
         raise CaseError(key, name, allowed, nearest_word(path.name, there))
     try:
         stamp = path.stat()

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import may_pull, restitution
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import mass
+from ryusa.casefile.grains.values import mass
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import terminal_velocity
@@ -15,15 +16,11 @@ from ryusa.laws import collision, immersed
 from ryusa.laws._family import evaluate, numbers
 from ryusa.laws.families import Film, Rebound
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
 numbers(__name__, Film.NONE, Film.LUBRICATION)  # engines know a film by its reach
 REACH = 0.25  # of a film when the case gives none, in mean diameters
 
 
-def film_reach(case: "Case") -> float:
+def film_reach(case: Case) -> float:
     """Gap below which the film force acts [m]; 0 without film force."""
     wet = case.water
     if wet is None or Film.of(wet.film) is Film.NONE:
@@ -31,7 +28,7 @@ def film_reach(case: "Case") -> float:
     return wet.film_reach if wet.film_reach is not None else REACH * reference_diameter(case)
 
 
-def check_films(case: "Case") -> Iterator[CaseError]:
+def check_films(case: Case) -> Iterator[CaseError]:
     """Find keys of films that are missing or contradict each other."""
     wet = case.water
     if wet is None:
@@ -49,7 +46,7 @@ def check_films(case: "Case") -> Iterator[CaseError]:
     yield from _lengths(case, wet, film)
 
 
-def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]:
+def _lengths(case: Case, wet: WaterSection, film: bool) -> Iterator[CaseError]:
     d = reference_diameter(case)
     needed = "asperity" in (*Film.of(wet.film).takes, *Rebound.of(wet.rebound).takes)
     if wet.asperity is None:
@@ -66,7 +63,7 @@ def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]
         yield CaseError("water.film_reach", wet.film_reach, f"must not be above the mean diameter, {d:g} m")
 
 
-def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
+def check_film_step(case: Case, derived: Derived) -> Iterator[CaseError]:
     """Find a time step too long for the dashpot of a wet contact, or for a film about to touch."""
     wet = case.water
     if wet is None:
@@ -86,7 +83,7 @@ def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         yield CaseError("water.asperity", wet.asperity, text)
 
 
-def step_limits(case: "Case", k_n: float, d_min: float, meet: bool) -> tuple[float, float]:
+def step_limits(case: Case, k_n: float, d_min: float, meet: bool) -> tuple[float, float]:
     """Largest steps [s] for the most damped wet contact, and for the thinnest film; inf without them.
 
     Parameters
@@ -101,14 +98,14 @@ def step_limits(case: "Case", k_n: float, d_min: float, meet: bool) -> tuple[flo
     m = sum(mass(case, d_min)[:2])
     rebound = film = math.inf
     if wet.rebound != "dry":
-        zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case))
+        zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case.contact))
         rebound = collision.step_limit(zeta, collision.omega_natural(k_n, 0.5 * m if meet else m))
     if wet.film != "none" and wet.asperity is not None:
         film = wet.asperity * immersed.stokes_number(1.0, m, 0.5 * d_min, wet.density, wet.viscosity)
     return rebound, film
 
 
-def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def film_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Restitution under water and reach of films; none where contacts are those in air."""
     wet = case.water
     if wet is None or (wet.rebound == "dry" and wet.film == "none"):
@@ -122,7 +119,7 @@ def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             number("water", "Stokes number", st, "-", "of an impact on a wall at the settling velocity")
         )
         if wet.rebound != "dry":
-            e = restitution(case)[0]
+            e = restitution(case.contact)[0]
             e = evaluate(
                 Rebound.of(wet.rebound), e_dry=e, st=st, st_c=wet.rebound_stokes,
                 roughness=wet.asperity or math.nan, d=derived.d,

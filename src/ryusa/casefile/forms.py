@@ -5,52 +5,29 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from pydantic import Field
 
-from ryusa.casefile.files import RelativePath, contents, folder_of, inside
-from ryusa.casefile.quantities import Number
+from ryusa.casefile.case import Case
+from ryusa.casefile.files import contents, inside
+from ryusa.casefile.grains.schema import FormSection, GrainsSection
 from ryusa.casefile.rows import ExplainRow, word
-from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
 from ryusa.formats.mesh import KINDS, read_mesh
 from ryusa.model.closed_mesh import ClosedMesh, MeshFault
 from ryusa.model.clump import MOST_SPHERES, SHAPES, Clump
 from ryusa.model.filling import LEAST_FILLED, Filling, fill_ellipsoid, fill_mesh
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 SPHERES = 12  # at most, where the case does not say
-
-
-class FormSection(Section):
-    """A clump of your own; a mesh or both ratios of axes."""
-
-    file: RelativePath | None = None
-    """STL or OBJ file of a closed body, in the folder of the case; its unit does not matter, as clumps are
-    scaled to the volume of a sphere of their diameter."""
-    elongation: Annotated[Number, Field(ge=0.1, le=1)] | None = None
-    """Ratio b/a of the axes a >= b >= c of an ellipsoid (Zingg)."""
-    flatness: Annotated[Number, Field(ge=0.1, le=1)] | None = None
-    """Ratio c/b of its axes."""
-    spheres: Annotated[int, Field(ge=1, le=MOST_SPHERES)] | None = None
-    """Largest number of spheres; 12 when neither this nor filled is given, 64 with filled alone."""
-    filled: Annotated[Number, Field(ge=LEAST_FILLED, lt=1)] | None = None
-    """Share of the volume of the body that the spheres are to fill; as few as fill it are taken."""
-
-
 Spheres = tuple[tuple[float, float, float, float], ...]
 
 
-def check_forms(case: "Case") -> Iterator[CaseError]:
+def check_forms(grains: GrainsSection, shapes: dict[str, FormSection]) -> Iterator[CaseError]:
     """Find shapes that are neither a mesh nor ratios, names that are taken, and shapes without use."""
-    given = case.grains.shape
+    given = grains.shape
     used = {given} if isinstance(given, str) else set(given)
-    unknown = {one for one in used if one not in SHAPES and one not in case.shapes and not _is_table(one)}
-    for name, form in case.shapes.items():
+    unknown = {one for one in used if one not in SHAPES and one not in shapes and not _is_table(one)}
+    for name, form in shapes.items():
         key = f"shapes.{name}"
         if name in SHAPES or _is_table(name):
             yield CaseError(
@@ -74,7 +51,7 @@ def _is_table(name: str) -> bool:
     return name.lower().endswith(".csv")
 
 
-def clump_of_form(case: "Case", name: str) -> Clump:
+def clump_of_form(case: Case, name: str) -> Clump:
     """Clump of a shape of the case, of the volume of a sphere of 1 m.
 
     Raises
@@ -84,7 +61,7 @@ def clump_of_form(case: "Case", name: str) -> Clump:
     return _clump(spheres_of_form(case, name))
 
 
-def spheres_of_form(case: "Case", name: str) -> Spheres:
+def spheres_of_form(case: Case, name: str) -> Spheres:
     """Spheres of a shape of the case as x, y, z, d, in the unit of its mesh; those that its run made.
 
     Raises
@@ -94,11 +71,11 @@ def spheres_of_form(case: "Case", name: str) -> Spheres:
     return _kept(case, name) or _made(case, name)
 
 
-def _kept(case: "Case", name: str) -> Spheres | None:
+def _kept(case: Case, name: str) -> Spheres | None:
     """Spheres that a run made of this shape, where the case is that of its folder."""
     from ryusa.results import schema
 
-    folder = folder_of(case)
+    folder = case.folder
     path = folder / schema.CASE_JSON
     if case.path is None or not schema.is_run_folder(folder) or not path.is_file() or path.is_symlink():
         return None
@@ -119,7 +96,7 @@ def _clump(spheres: Spheres) -> Clump:
     return clump.scaled(1.0 / clump.d_volume)
 
 
-def _made(case: "Case", name: str) -> Spheres:
+def _made(case: Case, name: str) -> Spheres:
     filling = _filling(case, name)
     key, n = f"shapes.{name}", len(filling.d)
     if filling.filled < LEAST_FILLED:
@@ -136,7 +113,7 @@ def _made(case: "Case", name: str) -> Spheres:
     return tuple(map(tuple, np.column_stack([filling.x, filling.d]).tolist()))
 
 
-def _filling(case: "Case", name: str) -> Filling:
+def _filling(case: Case, name: str) -> Filling:
     form = case.shapes[name]
     most = form.spheres or (SPHERES if form.filled is None else MOST_SPHERES)
     share = form.filled or 1.0
@@ -163,7 +140,7 @@ def _in_mesh(body: _Body, most: int, share: float) -> Filling:
         raise CaseError(body.key, None, str(fault)) from None
 
 
-def _body(case: "Case", name: str) -> _Body:
+def _body(case: Case, name: str) -> _Body:
     """The body of a mesh.
 
     Raises
@@ -172,10 +149,10 @@ def _body(case: "Case", name: str) -> _Body:
     """
     file, key = case.shapes[name].file, f"shapes.{name}.file"
     assert file is not None
-    path = inside(case, key, file)
+    path = inside(case.folder, key, file)
     if path.suffix.lower() not in KINDS:
         raise CaseError(key, file, "must be an STL or OBJ file")
-    return contents(case, key, file, path, partial(_read, key))
+    return contents(case.folder, key, file, path, partial(_read, key))
 
 
 @lru_cache(maxsize=8)
@@ -186,7 +163,7 @@ def _read(key: str, path: Path, name: str, _changed: int, _size: int) -> _Body:
         raise CaseError(key, name, str(fault)) from None
 
 
-def form_rows(case: "Case", name: str, clump: Clump) -> list[ExplainRow]:
+def form_rows(case: Case, name: str, clump: Clump) -> list[ExplainRow]:
     """How like its body the clump of a shape of the case is."""
     form = case.shapes.get(name)
     if form is None:

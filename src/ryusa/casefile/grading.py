@@ -4,17 +4,15 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ryusa.casefile.files import contents, folder_of, inside
+from ryusa.casefile.case import Case
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.files import contents, inside
+from ryusa.casefile.grains.schema import GrainsSection
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
 from ryusa.formats.sieve import read_sieve_curve
 from ryusa.model.grading import SHARES, Grading, GradingFault
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
 KEY = "grains.sieve_curve"
 BUILDERS = ("packing", "flume", "box", "fill", "empty", "stream")  # those that draw sizes
@@ -23,7 +21,7 @@ COARSE = 0.05  # share of the mass in one grain above which a curve is laid poor
 DURATION = 1.5  # power of the diameter that the shortest contact follows at one stiffness
 
 
-def points_of(case: "Case") -> tuple[tuple[float, float], ...] | None:
+def points_of(case: Case) -> tuple[tuple[float, float], ...] | None:
     """Diameter [m] and percent finer of the sieve curve as given, in its order; None without one.
 
     Raises
@@ -35,7 +33,7 @@ def points_of(case: "Case") -> tuple[tuple[float, float], ...] | None:
         return given
     path = sieve_file(case)
     assert path is not None
-    return contents(case, KEY, given, path, _read)
+    return contents(case.folder, KEY, given, path, _read)
 
 
 @lru_cache(maxsize=4)
@@ -43,20 +41,20 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> tuple[tuple[float
     return read_sieve_curve(path, name)
 
 
-def sieve_file(case: "Case") -> Path | None:
+def sieve_file(case: Case) -> Path | None:
     """File of the sieve curve; a run folder holds the one that its own run read."""
     given = case.grains.sieve_curve
     if not isinstance(given, str):
         return None
     from ryusa.results import schema
 
-    kept = folder_of(case) / schema.SIEVE
+    kept = case.folder / schema.SIEVE
     if schema.is_run_folder(kept.parent) and kept.is_file() and not kept.is_symlink():
         return kept
-    return inside(case, KEY, given)
+    return inside(case.folder, KEY, given)
 
 
-def grading_of(case: "Case") -> Grading | None:
+def grading_of(case: Case) -> Grading | None:
     """Curve of the grains that are laid: what lies between `finest` and `coarsest`, as 100 %; None without.
 
     Raises
@@ -82,7 +80,7 @@ def _whole(points: tuple[tuple[float, float], ...]) -> Grading:
     return Grading.of([(d, percent / 100.0) for d, percent in points])
 
 
-def reference_diameter(case: "Case") -> float:
+def reference_diameter(case: Case) -> float:
     """Diameter of u_star, roughness, overlap/d and fixed grains [m]: grains.diameter, or D50 of the curve."""
     if case.grains.diameter is not None:
         return case.grains.diameter
@@ -92,7 +90,7 @@ def reference_diameter(case: "Case") -> float:
     return grading.diameter(0.5)
 
 
-def check_grading(case: "Case") -> Iterator[CaseError]:
+def check_grading(case: Case) -> Iterator[CaseError]:
     """Find a curve that does not say what every grain is, and keys or builders that have no use for it."""
     grains = case.grains
     if grains.sieve_curve is None:
@@ -174,7 +172,7 @@ def _ends(whole: Grading, finest: float | None, coarsest: float | None) -> Itera
 # ---------------------------------------------------------------------------------------- rows of ryusa check
 
 
-def grading_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def grading_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Sizes of the curve, what is cut of it, how well so many grains lay it and what the finest cost."""
     grading, points = grading_of(case), points_of(case)
     if grading is None or points is None:
@@ -187,7 +185,8 @@ def grading_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         number("grains", "sorting", grading.sorting, "-", "geometric standard deviation sqrt(D84/D16)"),
         number("grains", "mean by number", grading.mean_diameter, "cm", "fine grains are most in number"),
     ]
-    return [*rows, *_cut_rows(case, whole, grading), *_laid_rows(derived, grading), _cost(derived, grading)]
+    cut = _cut_rows(case.grains, whole, grading)
+    return [*rows, *cut, *_laid_rows(derived, grading), _cost(derived, grading)]
 
 
 def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
@@ -201,23 +200,23 @@ def _size(share: float, whole: Grading, grading: Grading) -> ExplainRow:
     return number("grains", f"D{round(100 * share)}", laid, "cm", origin, flag)
 
 
-def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
+def _cut_rows(grains: GrainsSection, whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
     """What truncation leaves out, and what it would have cost.
 
     The shortest contact is one of the finest grains, and a cell of the search for neighbours is as wide as
     the largest grain and a little more.
     """
-    low, high = case.grains.finest, case.grains.coarsest
+    low, high = grains.finest, grains.coarsest
     if low is not None and (share := whole.share_below(low)) > 0.0:
         without = "how small they are the curve does not say"
         if whole.finer[0] == 0.0:
             kept = (whole.share_below(high) if high else 1.0) - share
             open_cut = whole.cut(0.0, high or math.inf)
             steps = (float(grading.d[0]) / float(open_cut.d[0])) ** DURATION
-            grains = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
+            more = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
             without = (
                 f"with them, down to {1e3 * float(open_cut.d[0]):.3g} mm, {_times(steps)} as many steps and "
-                f"{_times(grains)} as many grains for the same mass of the others"
+                f"{_times(more)} as many grains for the same mass of the others"
             )
         yield _share("mass finer than finest, left out", share, f"grains.finest; {without}")
     if high is not None and (share := 1.0 - whole.share_below(high)) > 0.0:
@@ -226,10 +225,10 @@ def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[Explai
             kept = 1.0 - share - (whole.share_below(low) if low else 0.0)
             open_cut = whole.cut(low or 0.0)
             wider = float(open_cut.d[-1]) / float(grading.d[-1])
-            grains = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
+            more = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
             without = (
                 f"with them, up to {1e3 * float(open_cut.d[-1]):.3g} mm, no more steps at the same "
-                f"stiffness, as the finest grains set the step; {_times(grains)} as many grains for the same "
+                f"stiffness, as the finest grains set the step; {_times(more)} as many grains for the same "
                 f"mass of the others, and cells of the search for neighbours {_times(wider)} as wide"
             )
         yield _share("mass coarser than coarsest, left out", share, f"grains.coarsest; {without}")
@@ -239,7 +238,7 @@ def _share(name: str, share: float, origin: str) -> ExplainRow:
     return ExplainRow("grains", name, share, "-", f"{100.0 * share:.3g} %", origin, "warning")
 
 
-def _laid_rows(derived: "Derived", grading: Grading) -> Iterator[ExplainRow]:
+def _laid_rows(derived: Derived, grading: Grading) -> Iterator[ExplainRow]:
     """How closely so many grains can lay the curve."""
     if derived.n_grain < 1:
         return
@@ -251,7 +250,7 @@ def _laid_rows(derived: "Derived", grading: Grading) -> Iterator[ExplainRow]:
     yield ExplainRow("grains", "curve met within", share, "-", f"{100.0 * share:.3g} %", origin, flag)
 
 
-def _cost(derived: "Derived", grading: Grading) -> ExplainRow:
+def _cost(derived: Derived, grading: Grading) -> ExplainRow:
     """What the finest grains cost, against equal grains of the reference diameter."""
     finest, tenth = float(grading.d[0]), grading.diameter(0.1)
     steps, grains = (derived.d / finest) ** DURATION, derived.d**3 / grading.mean_cube

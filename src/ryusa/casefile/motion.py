@@ -2,17 +2,14 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.quantities import Acceleration, Boolean, PositiveLength, Slope, SlopeAngle
+from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 RIVALS = (("slope", "slope_angle"),)
 STEEPEST = 1.0  # tangent, beyond which a slope is given as an angle
@@ -36,29 +33,22 @@ class MotionSection(Section):
     when not given."""
 
 
-def slope(case: "Case") -> float:
+def slope(motion: MotionSection) -> float:
     """Bed slope at the start [rad], positive down towards +x."""
-    if case.motion.slope_angle is not None:
-        return case.motion.slope_angle
-    return math.atan(case.motion.slope or 0.0)
+    return motion.slope_angle if motion.slope_angle is not None else math.atan(motion.slope or 0.0)
 
 
-def slope_at_last(case: "Case") -> float:
+def slope_at_last(motion: MotionSection, timeline: Timeline) -> float:
     """Bed slope after the last change of the timeline [rad], positive down towards +x."""
-    for change in reversed(case.timeline):
+    for change in reversed(timeline):
         if change.slope is not None or change.slope_angle is not None:
             return change.slope_angle if change.slope_angle is not None else math.atan(change.slope or 0.0)
-    return slope(case)
+    return slope(motion)
 
 
-def may_rotate(case: "Case") -> bool:
+def may_rotate(motion: MotionSection, timeline: Timeline) -> bool:
     """Whether grains rotate from the start or after some change of the timeline."""
-    return case.motion.rotation == "free" or any(change.rotation == "free" for change in case.timeline)
-
-
-def slab_width(case: "Case") -> float:
-    """Width that a plane scene stands for [m]."""
-    return case.motion.slab_width or reference_diameter(case)
+    return motion.rotation == "free" or any(change.rotation == "free" for change in timeline)
 
 
 def too_steep(key: str, value: float) -> CaseError:
@@ -70,14 +60,12 @@ def too_steep(key: str, value: float) -> CaseError:
     )  # fmt: skip
 
 
-def check_motion(case: "Case") -> Iterator[CaseError]:
+def check_motion(motion: MotionSection, timeline: Timeline) -> Iterator[CaseError]:
     """Find keys of [motion] that have no effect, and slopes that are rather degrees or per cent."""
-    slopes = {"motion.slope": case.motion.slope}
-    slopes |= {f"timeline.{k}.slope": change.slope for k, change in enumerate(case.timeline)}
+    slopes = {"motion.slope": motion.slope}
+    slopes |= {f"timeline.{k}.slope": change.slope for k, change in enumerate(timeline)}
     for key, value in slopes.items():
         if value is not None and abs(value) > STEEPEST:
             yield too_steep(key, value)
-    if case.motion.slab_width is not None and not case.motion.plane:
-        yield CaseError(
-            "motion.slab_width", case.motion.slab_width, "has no effect unless motion.plane = true"
-        )
+    if motion.slab_width is not None and not motion.plane:
+        yield CaseError("motion.slab_width", motion.slab_width, "has no effect unless motion.plane = true")

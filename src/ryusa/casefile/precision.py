@@ -1,21 +1,15 @@
 """[stop] precision: how well averages must be known for a run to end."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import PlainSerializer, PlainValidator, WithJsonSchema
 
-from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.quantities import read_ratio
-from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section
 from ryusa.catalogue import MEASURES
-from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 INDEPENDENT = 60  # independent samples that an average must be worth, and frames before the first measurement
 
@@ -136,55 +130,3 @@ def measure_of(name: str) -> str:
     'transport'
     """
     return next(entry.name for entry in MEASURES if name in entry.precision)
-
-
-def begin_of(case: "Case") -> float:
-    """Begin of the window over which averages are taken [s]: the case settles, and changes no more."""
-    return max([case.record.settle, *(change.at for change in case.timeline)])
-
-
-def check_precision(case: "Case") -> Iterator[CaseError]:
-    """Find averages that the run will not have, and a precision without a latest end."""
-    precision = case.stop.precision
-    if precision is None:
-        return
-    limits, key, wet = precision.limits(), "stop.precision", case.water
-    if not limits:
-        yield CaseError(key, None, f"needs one of {', '.join(PrecisionSection.model_fields)}")
-        return
-    if case.stop.time is None:
-        yield CaseError(key, None, "needs stop.time beside it, the latest end of the run")
-    elif case.stop.time - begin_of(case) < (INDEPENDENT - 1) * case.record.frames:
-        since = f"t = {begin_of(case):g} s (record.settle, or the last change of the timeline)"
-        yield CaseError(
-            key, None,
-            f"needs {INDEPENDENT} frames or more between {since} and stop.time, {case.stop.time:g} s; frames "
-            f"are {case.record.frames:g} s apart (record.frames)",
-        )  # fmt: skip
-    for name, limit in limits.items():
-        one = f"{key}.{name}"
-        if measure_of(name) == "water":
-            if wet is None or wet.profile != "column":
-                yield CaseError(one, str(limit), "needs a column of water (water.profile = 'column')")
-            elif wet.row is not None:
-                yield CaseError(one, str(limit), "needs one column of water, not a row; leave out water.row")
-        elif not periodic(case)[0]:
-            yield CaseError(one, str(limit), "needs a scene that is periodic along x, such as a flume")
-        if name == "q_star" and wet is not None and not case.grains.density > wet.density:
-            yield CaseError(one, str(limit), "needs grains that sink; give q instead", "stop.precision.q")
-
-
-def precision_rows(case: "Case") -> list[ExplainRow]:
-    """One row for each average that ends the run."""
-    precision = case.stop.precision
-    if precision is None:
-        return []
-    end = "" if case.stop.time is None else f"; at the latest at stop.time, {case.stop.time:g} s"
-    return [
-        word(
-            "stop", name, f"known to {limit}",
-            f"the run ends when the average of `measure {measure_of(name)}` from t = {begin_of(case):g} s on "
-            f"is steady and its standard error is this small{end}",
-        )
-        for name, limit in precision.limits().items()
-    ]  # fmt: skip

@@ -7,12 +7,13 @@ from typing import Any
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
+from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN
 from ryusa.casefile.contact.resolved import resolved_contact
-from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.derive import derive
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import points_of
-from ryusa.casefile.motion import slab_width
-from ryusa.casefile.record import events_of
+from ryusa.casefile.grains.values import slab_width
+from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.values import bottom_points, line_points, row_plan, segments_of, stream, water_alone
 from ryusa.casefile.shape import spheres_of
 from ryusa.laws.families import Mixing, SurfaceRule
@@ -62,7 +63,7 @@ def _resolve_column(case: Case, found: Derived, data: dict[str, Any]) -> None:
     wet = case.water
     assert wet is not None
     if wet.profile == "column":
-        keys = column_keys(case)
+        keys = case.column
         cell = keys.cell or CELL * found.d
         data["column"] = keys.model_dump(mode="json") | {
             "cell": cell,

@@ -3,19 +3,19 @@
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from ryusa.casefile.case import Case
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.forms import check_forms, clump_of_form, form_rows, spheres_of_form
+from ryusa.casefile.grains.schema import FormSection, GrainsSection
 from ryusa.casefile.rows import ExplainRow, count, number, word
+from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
 from ryusa.formats.clump import read_clump
 from ryusa.model.clump import SHAPES, Clump, shape
 from ryusa.spelling import nearest_word
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
 KEY = "grains.shape"
 SPHERE = "sphere"
@@ -31,7 +31,7 @@ class Shape(NamedTuple):
     clump: Clump
 
 
-def shapes_of(case: "Case") -> tuple[Shape, ...]:
+def shapes_of(case: Case) -> tuple[Shape, ...]:
     """Clumps of a case; the rest of the grains are spheres.
 
     Raises
@@ -49,46 +49,46 @@ def shapes_of(case: "Case") -> tuple[Shape, ...]:
     return tuple(found)
 
 
-def clump_files(case: "Case") -> list[str]:
+def clump_files(grains: GrainsSection, shapes: dict[str, FormSection]) -> list[str]:
     """Names of the files that `grains.shape` and [shapes] give."""
-    given = case.grains.shape
+    given = grains.shape
     tables = [name for name in ([given] if isinstance(given, str) else given) if _is_file(name)]
-    return tables + [form.file for form in case.shapes.values() if form.file is not None]
+    return tables + [form.file for form in shapes.values() if form.file is not None]
 
 
-def spheres_of(case: "Case", name: str) -> list[list[float]]:
+def spheres_of(case: Case, name: str) -> list[list[float]]:
     """Spheres of one of [shapes] as x, y, z, d, in the unit of its mesh, for the resolved case."""
     return [list(one) for one in spheres_of_form(case, name)]
 
 
-def has_clumps(case: "Case") -> bool:
+def has_clumps(grains: GrainsSection) -> bool:
     """Whether some grains are clumps; their file need not be there."""
-    given = case.grains.shape
+    given = grains.shape
     return any(name != SPHERE for name in ([given] if isinstance(given, str) else given))
 
 
-def extent(case: "Case") -> float:
+def extent(case: Case) -> float:
     """Largest sphere about the centre of a grain that holds it, over the diameter of its volume [-]."""
     return max((one.clump.extent for one in shapes_of(case)), default=1.0)
 
 
-def least_mass(case: "Case") -> float:
+def least_mass(case: Case) -> float:
     """Least effective mass of a push on a grain over its mass: off the centre it also turns a clump [-]."""
     return min((one.clump.least_mass for one in shapes_of(case)), default=1.0)
 
 
-def spheres_per_grain(case: "Case") -> float:
+def spheres_per_grain(case: Case) -> float:
     """Mean number of spheres of a grain."""
     return 1.0 + sum(one.share * (len(one.clump.d) - 1) for one in shapes_of(case))
 
 
-def check_shape(case: "Case") -> Iterator[CaseError]:
+def check_shape(case: Case) -> Iterator[CaseError]:
     """Find shapes that are unknown, and cases that cannot have clumps."""
     given = case.grains.shape
-    if faults := list(check_forms(case)):
+    if faults := list(check_forms(case.grains, case.shapes)):
         yield from faults
         return
-    if not has_clumps(case) and isinstance(given, str):
+    if not has_clumps(case.grains) and isinstance(given, str):
         return
     try:
         shapes_of(case)
@@ -97,13 +97,13 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
         return
     if not isinstance(given, str) and (total := sum(given.values())) > 1.0 + WHOLE:
         yield CaseError(KEY, None, f"the shares add up to {total:g}: at most 1, the rest are spheres")
-    if not has_clumps(case):
+    if not has_clumps(case.grains):
         return
     if case.motion.plane:
         yield CaseError(KEY, None, "needs motion in space: motion.plane = false")
     if case.motion.rotation != "free":
         yield CaseError(KEY, None, "needs motion.rotation = 'free'")
-    yield from _check_water(case)
+    yield from _check_water(case.water)
     if case.stop.precision is not None:
         yield CaseError("stop.precision", None, "cannot end a run with clumps; give stop.time")
     if case.build.kind not in BUILDERS:
@@ -112,9 +112,8 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
         yield CaseError("grains.shape_volume", case.grains.shape_volume, f"excludes {KEY}")
 
 
-def _check_water(case: "Case") -> Iterator[CaseError]:
+def _check_water(water: WaterSection | None) -> Iterator[CaseError]:
     """Find keys of the water that clumps exclude."""
-    water = case.water
     if water is None:
         return
     for key in ("rebound", "film"):
@@ -129,7 +128,7 @@ def _check_water(case: "Case") -> Iterator[CaseError]:
         yield CaseError("water.shape_area", water.shape_area, text)
 
 
-def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def shape_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Clumps of a case: their form, and what they change."""
     shapes, rows = shapes_of(case), list[ExplainRow]()
     if not shapes:
@@ -155,7 +154,7 @@ def _is_file(name: str) -> bool:
     return name.lower().endswith(".csv")
 
 
-def _clump_of(case: "Case", key: str, name: str) -> Clump:
+def _clump_of(case: Case, key: str, name: str) -> Clump:
     """A shape of the library or of a file, of the volume of a sphere of 1 m."""
     if name in case.shapes:
         return clump_of_form(case, name)
@@ -168,7 +167,7 @@ def _clump_of(case: "Case", key: str, name: str) -> Clump:
             )
             raise CaseError(key, name, known, nearest_word(name, words))
         return _of_library(name)
-    return contents(case, key, name, inside(case, key, name), _of_file)
+    return contents(case.folder, key, name, inside(case.folder, key, name), _of_file)
 
 
 @lru_cache(maxsize=16)

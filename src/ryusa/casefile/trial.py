@@ -3,22 +3,18 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.feeds.values import sedigraph_points
 from ryusa.casefile.read import read
 from ryusa.casefile.row.ends import HYDROGRAPH, STAGE, hydrograph_points, stage_points
-from ryusa.casefile.row.schema import row_keys
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 LEAST_FRAMES = 10
 
 
-def read_shortened(path: str | Path, overrides: dict[str, str], time: str) -> "Case":
+def read_shortened(path: str | Path, overrides: dict[str, str], time: str) -> Case:
     """Read a case that ends at a time, whose timeline, feeds and settling keep their order within it.
 
     Parameters
@@ -57,10 +53,10 @@ def read_shortened(path: str | Path, overrides: dict[str, str], time: str) -> "C
     return read(path, overrides | shorter | _courses(whole, share))
 
 
-def _courses(whole: "Case", share: float) -> dict[str, str]:
+def _courses(whole: Case, share: float) -> dict[str, str]:
     """Hydrograph, stage and sedigraphs whose times shrink, too, as points."""
     found: dict[str, str] = {}
-    keys = row_keys(whole)
+    keys = whole.row
     if keys is not None and keys.upstream is not None and keys.upstream.hydrograph is not None:
         found[HYDROGRAPH] = _points(hydrograph_points(whole, keys.upstream.hydrograph), share)
     if keys is not None and keys.downstream is not None and keys.downstream.stage is not None:

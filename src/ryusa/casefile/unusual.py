@@ -1,15 +1,11 @@
 """Rows of `ryusa check` that warn of values far from those of sediment in water: most are slips of a unit."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import crest_of, dam_span, row_plan, stream, water_alone
 from ryusa.casefile.rows import ExplainRow, number
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 DENSITY = (300.0, 20_000.0)  # of grains [kg/m3]
 WATER_DENSITY = (600.0, 2_500.0)  # [kg/m3]
@@ -18,7 +14,7 @@ DEPTH = (0.5, 200.0)  # over the diameter of the grains [-]
 DAM = 0.5  # height of a dam over the length of its row [-]
 
 
-def unusual_rows(case: "Case") -> list[ExplainRow]:
+def unusual_rows(case: Case) -> list[ExplainRow]:
     """One row for each value that lies far outside what is met in nature and in laboratories."""
     return [
         number("unusual", key, value, unit, f"{what}: check number and unit", "warning")
@@ -27,7 +23,7 @@ def unusual_rows(case: "Case") -> list[ExplainRow]:
     ]
 
 
-def _values(case: "Case") -> Iterator[tuple[str, float, str, tuple[float, float], str]]:
+def _values(case: Case) -> Iterator[tuple[str, float, str, tuple[float, float], str]]:
     """Key, value, unit, range and what lies in it."""
     water, alone = case.water, water_alone(case)
     if not alone:
@@ -46,7 +42,7 @@ def _values(case: "Case") -> Iterator[tuple[str, float, str, tuple[float, float]
         low = DEPTH[0] if stream(case) else 0.0  # without a stream, water that covers no grain is refused
         text = f"{water.depth / d:.3g} diameters of the grains"
         yield "water.depth", water.depth, "m", (low * d, DEPTH[1] * d), text
-    keys = row_keys(case)
+    keys = case.row
     if keys is not None and keys.dams:
         plan = row_plan(case)
         for dam in keys.dams:

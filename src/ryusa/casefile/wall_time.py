@@ -8,11 +8,10 @@ from ryusa import run_times
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness
 from ryusa.casefile.column.checks import SPARE
-from ryusa.casefile.column.schema import CELL, column_keys
+from ryusa.casefile.column.schema import CELL
 from ryusa.casefile.contact.values import timing
-from ryusa.casefile.derive import Derived
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import row_plan, segments_of, stream, water_alone
 from ryusa.laws.families import ContactTiming
 
@@ -111,7 +110,7 @@ def kind_of_run(case: Case, threads: int = 1, engine: str = "cpu") -> str:
     """Kind of a run, in words: runs of one kind take alike over the rule of thumb."""
     profile = None if case.water is None else case.water.profile
     water = "dry" if profile is None else f"{profile} water"
-    if row_keys(case) is not None:
+    if case.row is not None:
         water = "water alone, row of columns" if water_alone(case) else "row of columns"
     elif profile == "column":
         water = "column of water"
@@ -128,11 +127,11 @@ def seconds_per_step(case: Case, derived: Derived) -> float:
     per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
     if case.water is not None:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
-    steps = 1 if water_alone(case) or case.water is None else column_keys(case).interval
+    steps = 1 if water_alone(case) or case.water is None else case.column.interval
     per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere
     per_step += SECONDS_PER_ROW_CELL * cells_of_row(case) / steps
     if case.water is not None and case.water.profile == "column" and not water_alone(case):
-        exchange = SECONDS_PER_EXCHANGE if row_keys(case) is None else SECONDS_PER_EXCHANGE_IN_ROW
+        exchange = SECONDS_PER_EXCHANGE if case.row is None else SECONDS_PER_EXCHANGE_IN_ROW
         per_step += (exchange + SECONDS_PER_GRAIN_EXCHANGED * derived.n_sphere) / steps
     return per_step * (1.0 if case.rolling.model == "none" else ROLLING)
 
@@ -186,13 +185,11 @@ def keep_wall_time(
 
 def cells_of_row(case: Case) -> int:
     """Cells of a row of columns; 0 where there is none. Over a bed it is an estimate: grains decide."""
-    if row_keys(case) is None:
+    if case.row is None:
         return 0
     if water_alone(case) or stream(case):
         plan = row_plan(case)
         return plan.n * plan.n_cell
     bed, depth = bed_thickness(case), 0.0 if case.water is None else case.water.depth or 0.0
     height = SPARE * depth + (bed if math.isfinite(bed) else 0.0)
-    return segments_of(case)[2] * math.ceil(
-        height / (column_keys(case).cell or CELL * reference_diameter(case))
-    )
+    return segments_of(case)[2] * math.ceil(height / (case.column.cell or CELL * reference_diameter(case)))

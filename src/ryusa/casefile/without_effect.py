@@ -6,11 +6,12 @@ tests/casefile/test_keys_without_effect.py goes through the whole schema.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel
 
 from ryusa.casefile.builders.schema import (
+    BuildSection,
     DropSection,
     EmptySection,
     FillSection,
@@ -22,21 +23,23 @@ from ryusa.casefile.builders.schema import (
 )
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import counts, drawn_materials, fill_count
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import restitution, stiffness
-from ryusa.casefile.grains import has_own_sizes, laid_shares, spread_of
-from ryusa.casefile.materials import GRAINS, meeting
-from ryusa.casefile.motion import slope
-from ryusa.casefile.record import events_of
+from ryusa.casefile.feeds.schema import FeedSection
+from ryusa.casefile.grains.schema import spread_of
+from ryusa.casefile.grains.values import has_own_sizes, laid_shares
+from ryusa.casefile.materials.values import GRAINS, meeting
+from ryusa.casefile.motion import MotionSection, slope
+from ryusa.casefile.record.schema import Timeline
+from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.ends import hydrograph_points
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps, spheres_of
+from ryusa.casefile.walls.schema import WallSection
+from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
 from ryusa.laws.families import Drag, Lift
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 Found = Iterator[CaseError]
 
@@ -54,25 +57,24 @@ _TANGENTIAL = (
 )  # fmt: skip
 
 
-def check_without_effect(case: "Case") -> Found:
+def check_without_effect(case: Case) -> Found:
     """Find keys that cannot act, where who wrote them would think that they do."""
-    yield from _builder(case)
-    yield from _walls(case)
-    yield from _traffic(case)
+    yield from _builder(case.build, case.motion)
+    yield from _walls(case.walls, case.timeline)
+    yield from _traffic(case.feeds)
     if water_alone(case):
         for k, plane in enumerate(case.planes):
             text = "has no effect on water, and there are no grains; what stands in it is [[water.row.dams]]"
             yield CaseError(f"planes.{k}", plane.name, text)
     else:
         yield from _grains(case)
-        yield from _motion(case)
-        yield from _water(case)
+        yield from _motion(case.motion, case.timeline)
+        yield from _water(case.water)
         yield from _record(case)
 
 
-def _builder(case: "Case") -> Found:
-    build = case.build
-    if isinstance(build, FlumeSection) and case.motion.plane and given(build, "walls"):
+def _builder(build: BuildSection, motion: MotionSection) -> Found:
+    if isinstance(build, FlumeSection) and motion.plane and given(build, "walls"):
         text = "has no effect in a plane scene, which has no side walls"
         yield CaseError("build.walls", build.walls, text)
     if isinstance(build, DropSection) and build.copies == 1 and given(build, "height_step"):
@@ -83,17 +85,17 @@ def _builder(case: "Case") -> Found:
         yield CaseError("build.mass_unit", build.mass_unit, text)
 
 
-def _walls(case: "Case") -> Found:
-    moved: list[tuple[str, Any]] = [(f"walls.{k}", wall) for k, wall in enumerate(case.walls)]
-    moved += [(f"timeline.{k}.move", one.move) for k, one in enumerate(case.timeline) if one.move is not None]
+def _walls(walls: tuple[WallSection, ...], timeline: Timeline) -> Found:
+    moved: list[tuple[str, Any]] = [(f"walls.{k}", wall) for k, wall in enumerate(walls)]
+    moved += [(f"timeline.{k}.move", one.move) for k, one in enumerate(timeline) if one.move is not None]
     for key, one in moved:
         if given(one, "phase") and one.amplitude is None and one.frequency is None:
             text = "has no effect without an oscillation: amplitude and frequency"
             yield CaseError(f"{key}.phase", one.phase, text)
 
 
-def _traffic(case: "Case") -> Found:
-    for k, feed in enumerate(case.feeds):
+def _traffic(feeds: tuple[FeedSection, ...]) -> Found:
+    for k, feed in enumerate(feeds):
         key = f"feeds.{k}"
         if feed.low is not None and given(feed, "normal"):
             yield CaseError(f"{key}.normal", list(feed.normal), "has no effect in a box; it is for a disc")
@@ -106,12 +108,12 @@ def _traffic(case: "Case") -> Found:
                 yield CaseError(f"{key}.{name}", shown, f"{text}come in as they arrive")
 
 
-def _grains(case: "Case") -> Found:
+def _grains(case: Case) -> Found:
     grains = case.grains
     if GRAINS in grains.mixture:
         text = "is the material of the rest of the grains: leave it out, and give the shares of others"
         yield CaseError(f"grains.mixture.{GRAINS}", grains.mixture[GRAINS], text)
-    elif grains.mixture and table_of(case) is None and not laid_shares(case):
+    elif grains.mixture and table_of(case) is None and not laid_shares(case.grains, case.build):
         text = f"has no effect: builder '{case.build.kind}' lays no grain here; give feeds a material"
         yield CaseError("grains.mixture", None, text)
     if grains.bed_material is not None and not _sets_a_bed(case):
@@ -119,10 +121,10 @@ def _grains(case: "Case") -> Found:
         yield CaseError("grains.bed_material", grains.bed_material, f"{text}and walls have a material each")
 
 
-def _draws_sizes_of_grains(case: "Case") -> bool:
+def _draws_sizes_of_grains(case: Case) -> bool:
     """Whether some grain has the distribution of [grains], or that of a material which takes it over."""
     for name in drawn_materials(case):
-        if name is None or not has_own_sizes(case, name):
+        if name is None or not has_own_sizes(case.materials, name):
             return True
         own = case.materials[name]
         if own.sieve_curve is None and own.spread is None:
@@ -130,7 +132,7 @@ def _draws_sizes_of_grains(case: "Case") -> bool:
     return False
 
 
-def _sets_a_bed(case: "Case") -> bool:
+def _sets_a_bed(case: Case) -> bool:
     """Whether a builder sets fixed grains, a floor or walls of its own."""
     build = case.build
     if isinstance(build, DropSection):
@@ -143,7 +145,7 @@ def _sets_a_bed(case: "Case") -> bool:
     return True
 
 
-def _of_materials(case: "Case") -> Iterator[str]:
+def _of_materials(case: Case) -> Iterator[str]:
     """Values of materials that no contact takes: each of its pairs says its own."""
     if not case.materials or case.contact.restitution is None:
         return
@@ -170,20 +172,20 @@ _OF_CONTACT = (
 )  # fmt: skip
 
 
-def _motion(case: "Case") -> Found:
-    if case.motion.gravity == 0.0:
+def _motion(motion: MotionSection, timeline: Timeline) -> Found:
+    if motion.gravity == 0.0:
         for key in ("slope", "slope_angle"):
-            value = getattr(case.motion, key)
+            value = getattr(motion, key)
             if value is not None and value != 0.0:
                 yield CaseError(f"motion.{key}", value, "has no effect without gravity: motion.gravity is 0")
-            for k, one in enumerate(case.timeline):
+            for k, one in enumerate(timeline):
                 if getattr(one, key) is not None:
                     text = "has no effect without gravity: motion.gravity is 0"
                     yield CaseError(f"timeline.{k}.{key}", getattr(one, key), text)
 
 
-def _water(case: "Case") -> Found:
-    wet = case.water
+def _water(water: WaterSection | None) -> Found:
+    wet = water
     if wet is None:
         return
     if given(wet, "shape_area") and Drag.of(wet.drag) is Drag.NONE and Lift.of(wet.lift) is Lift.NONE:
@@ -193,7 +195,7 @@ def _water(case: "Case") -> Found:
         yield CaseError("water.zero", wet.zero, text)
 
 
-def _record(case: "Case") -> Found:
+def _record(case: Case) -> Found:
     record = case.record
     there = all(one < counts(case)[0] for one in record.tracked)  # else `check_record` says so
     if record.tracked and there and events_of(case) == "none":
@@ -201,7 +203,7 @@ def _record(case: "Case") -> Found:
         yield CaseError("record.tracked", list(record.tracked), text)
 
 
-def notes_without_effect(case: "Case") -> tuple[str, ...]:
+def notes_without_effect(case: Case) -> tuple[str, ...]:
     """What a case gives and has no effect, where that is common and harmless."""
     if water_alone(case):
         idle = [key for key in _given_keys(case) if not _acts_on_water(case, key)]
@@ -231,8 +233,8 @@ def notes_without_effect(case: "Case") -> tuple[str, ...]:
     if record.tracked and events_of(case) == "all" and case.stop.saltations is None:
         notes.append("record.tracked has no effect: contacts of all grains are recorded (record.events)")
     if isinstance(build, FillSection) and build.most is not None:
-        as_many = case.model_copy(update={"build": build.model_copy(update={"most": None})})
-        if build.most >= (held := fill_count(as_many)):
+        as_many = build.model_copy(update={"most": None})
+        if build.most >= (held := fill_count(case, as_many)):
             notes.append(f"build.most = {build.most:,} has no effect: the box holds {held:,} grains")
     if _is_central(case):
         idle = [key for key in _given_keys(case) if key in _TANGENTIAL]
@@ -242,7 +244,7 @@ def notes_without_effect(case: "Case") -> tuple[str, ...]:
     return (*notes, *(one for say in more for one in say(case)))
 
 
-def _given_keys(case: "Case") -> list[str]:
+def _given_keys(case: Case) -> list[str]:
     """Keys that a case gives, dotted, in its order; a list of tables counts as one key."""
 
     def below(section: BaseModel, before: str) -> Iterator[str]:
@@ -258,10 +260,10 @@ def _given_keys(case: "Case") -> list[str]:
     return sorted(below(case, ""), key=lambda key: (places[key.partition(".")[0]], key))
 
 
-def _acts_on_water(case: "Case", key: str) -> bool:
+def _acts_on_water(case: Case, key: str) -> bool:
     """Whether a key acts where no grain ever is."""
     if key == "water.row.width":  # of a discharge of the whole width, and of grains
-        keys = row_keys(case)
+        keys = case.row
         end = None if keys is None else keys.upstream
         every = [one.discharge for one in (end, *case.timeline) if one is not None]
         if end is not None and end.hydrograph is not None:
@@ -273,20 +275,20 @@ def _acts_on_water(case: "Case", key: str) -> bool:
     return any(key == one or key.startswith(f"{one}.") for one in _OF_WATER)
 
 
-def _draws(case: "Case") -> bool:
+def _draws(case: Case) -> bool:
     """Whether anything is drawn at random."""
     wet = case.water
-    if case.feeds or has_clumps(case) or case.grains.mixture:
+    if case.feeds or has_clumps(case.grains) or case.grains.mixture:
         return True
     if wet is not None and wet.column is not None and wet.column.fluctuations != "none":
         return True
     return not isinstance(case.build, DropSection | TableSection | RunSection)
 
 
-def _is_central(case: "Case") -> bool:
+def _is_central(case: Case) -> bool:
     """Whether a drop has nothing that moves along its contact."""
     build = case.build
-    level = slope(case) == 0.0 and not any(one.slope or one.slope_angle for one in case.timeline)
+    level = slope(case.motion) == 0.0 and not any(one.slope or one.slope_angle for one in case.timeline)
     return (
         isinstance(build, DropSection)
         and build.offset == build.speed_along == build.spin == 0.0
@@ -296,7 +298,7 @@ def _is_central(case: "Case") -> bool:
     )
 
 
-def _of_contacts(case: "Case") -> Iterator[str]:
+def _of_contacts(case: Case) -> Iterator[str]:
     """Keys of dashpots and springs that are zero."""
     contact = case.contact
     if contact.restitution == 1.0 or (contact.restitution is None and contact.damping == 0.0):
@@ -304,12 +306,12 @@ def _of_contacts(case: "Case") -> Iterator[str]:
             if given(contact, key):
                 yield f"contact.{key} has no effect: there is no normal dashpot"
     if stiffness(case)[1] == 0.0:
-        shear = given(contact, "restitution_shear") and restitution(case)[1] != 1.0
+        shear = given(contact, "restitution_shear") and restitution(case.contact)[1] != 1.0
         if shear:
             yield "contact.restitution_shear has no effect: there is no tangential spring"
 
 
-def _of_timeline(case: "Case") -> Iterator[str]:
+def _of_timeline(case: Case) -> Iterator[str]:
     """Entries that change nothing, and those at the very end."""
     rotation = case.motion.rotation
     for k, one in enumerate(case.timeline):
@@ -321,7 +323,7 @@ def _of_timeline(case: "Case") -> Iterator[str]:
             rotation = one.rotation
 
 
-def _of_bounds(case: "Case") -> Iterator[str]:
+def _of_bounds(case: Case) -> Iterator[str]:
     """Bounds that are not reached, and feeds and exits attached to a wall that stays where it is."""
     moved = {one.move.wall for one in case.timeline if one.move is not None}
     keys = ("velocity", "angular_velocity", "amplitude", "servo")

@@ -13,10 +13,10 @@ import math
 import sys
 from collections.abc import Callable, Iterable
 from enum import Enum
-from functools import lru_cache
+from functools import cached_property, lru_cache, update_wrapper
 from pathlib import Path
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
-from typing import Any
+from typing import Any, cast
 from weakref import WeakValueDictionary
 
 # Modules below these are covered by the versions in a key (store.py), so that a name says it all.
@@ -35,7 +35,7 @@ _LOAD_GLOBAL = dis.opmap["LOAD_GLOBAL"]
 _PLAIN = (bool, int, str, bytes, type(None), type(Ellipsis))
 
 
-latest: WeakValueDictionary[str, Any] = WeakValueDictionary()  # of each name, the function made last
+latest: "WeakValueDictionary[str, Compilable]" = WeakValueDictionary()  # of each name, the function made last
 
 
 class UnknownContentError(TypeError):
@@ -75,7 +75,7 @@ class _Digest:
             self.code(value, {})
         elif isinstance(value, ModuleType):
             self.put("module", value.__name__)
-        elif hasattr(kind, "content") and hasattr(kind, "inner"):  # Compiled (function.py)
+        elif isinstance(value, Compilable):
             self.called.append(value)
             self.put("compiled", value.content)
         elif isinstance(value, FunctionType):
@@ -216,6 +216,65 @@ def content_of(function: Callable[..., Any], *more: Any, called: list[Any] | Non
     digest.called = digest.called if called is None else called
     digest.function(function)
     return digest.hash.hexdigest()
+
+
+class Compilable:
+    """A function to be compiled, known by its content.
+
+    Attributes
+    ----------
+    py_func : the function as written.
+    options : options of Numba.
+    name : module and name of the function.
+    calls : compiled functions that its text names; known once its content is.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        update_wrapper(cast(Any, self), function)
+        self.py_func, self.options = function, options
+        self.name = f"{function.__module__}.{function.__qualname__}"
+        self.calls: list[Compilable] = []
+        self._asked = False
+        latest[self.name] = self
+
+    def __repr__(self) -> str:
+        return f"<compiled {self.name}>"
+
+    @cached_property
+    def content(self) -> str:
+        """Digest of all that decides what is compiled.
+
+        Raises
+        ------
+        UnknownContentError : it holds something of which nobody can say whether it has changed.
+        """
+        if self._asked:
+            raise UnknownContentError(f"{self!r} calls itself")
+        self._asked = True
+        try:
+            return content_of(self.py_func, *sorted(self._plain().items()), called=self.calls)
+        finally:
+            self._asked = False
+
+    @property
+    def keepable(self) -> bool:
+        """Whether a store can hold it."""
+        try:
+            return bool(self.content)
+        except UnknownContentError:
+            return False
+
+    def _plain(self) -> dict[str, Any]:
+        """Options of Numba, those that are on by default included.
+
+        A function has no `fastmath` and is not inlined by force unless the options say so. Numba would take
+        both from the function that calls it first, and keep the result for all callers: the last bits would
+        depend on what ran before on the machine. Inlining matters even where there is no `fastmath`:
+        where the same product stands in a function and in a caller that fuses its own, LLVM makes one of the
+        two, which is then not fused. With `error_model="numpy"` a division by zero gives inf or nan.
+        """
+        more = {"nopython": True, "error_model": "numpy", "fastmath": False, "forceinline": False}
+        return more | self.options
 
 
 def digest_of(*values: Any) -> str:

@@ -1,7 +1,7 @@
 """Numba's dispatchers of a compiled function: one for kernels that call it, one for calls from Python."""
 
 import pickle
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numba.core import serialize, sigutils
 from numba.core import types as numba_types
@@ -10,7 +10,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
 from ryusa.compiled import processor, store, tiers, waiting
-from ryusa.compiled.content import UnknownContentError, digest_of
+from ryusa.compiled.content import Compilable, UnknownContentError, digest_of
 from ryusa.compiled.numba_parts import (
     InnerPipeline,
     compiling,
@@ -21,9 +21,6 @@ from ryusa.compiled.numba_parts import (
     set_environments,
 )
 from ryusa.compiled.piece import LentType, Piece, PieceType
-
-if TYPE_CHECKING:
-    from ryusa.compiled.function import Compiled
 
 UNPICKLED = (
     pickle.UnpicklingError,
@@ -42,7 +39,7 @@ class _Kept:
 
     cache_path = ""
 
-    def __init__(self, function: "Compiled", kind: str) -> None:
+    def __init__(self, function: Compilable, kind: str) -> None:
         self._function, self._kind = function, kind
 
     def load_overload(self, signature: Any, context: Any) -> Any:
@@ -128,7 +125,7 @@ class _Dispatcher(CPUDispatcher):  # type: ignore[misc]
     without: tuple[str, ...] = ("no_cfunc_wrapper",)  # ways to call it that nobody takes
     pipeline: type[Compiler] = Compiler
 
-    def __init__(self, function: "Compiled", options: dict[str, Any]) -> None:
+    def __init__(self, function: Compilable, options: dict[str, Any]) -> None:
         options = options | dict.fromkeys(self.without, True)
         super().__init__(function.py_func, targetoptions=options, pipeline_class=self.pipeline)
         self.function, self._cache = function, _Kept(function, self.kind)

@@ -1,67 +1,23 @@
 """Functions that are compiled when a kernel needs them, and not before: Numba is loaded only then."""
 
-import functools
 from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
 from typing import Any, TypeVar, cast
 
-from ryusa.compiled.content import UnknownContentError, content_of, latest
+from ryusa.compiled.content import Compilable
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 FAST = {"contract", "nsz"}  # fused multiply-add, sign of zero ignored; no flag that hides a NaN
 
 
-class Compiled:
-    """A function that is compiled where it is called: into the kernel that calls it, or as one of its own.
-
-    Attributes
-    ----------
-    py_func : the function as written.
-    options : options of Numba.
-    name : module and name of the function.
-    calls : compiled functions that its text names; known once its content is.
-    """
-
-    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
-        functools.update_wrapper(self, function)
-        self.py_func, self.options = function, options
-        self.name = f"{function.__module__}.{function.__qualname__}"
-        self.calls: list[Compiled] = []
-        self._asked = False
-        latest[self.name] = self
+class Compiled(Compilable):
+    """A function that is compiled where it is called: into the kernel that calls it, or as one of its own."""
 
     def __call__(self, *given: Any) -> Any:
         """Call the compiled function, from the store or compiled now."""
         return self.entry(*given)
-
-    def __repr__(self) -> str:
-        return f"<compiled {self.name}>"
-
-    @cached_property
-    def content(self) -> str:
-        """Digest of all that decides what is compiled (content.py).
-
-        Raises
-        ------
-        UnknownContentError : it holds something of which nobody can say whether it has changed.
-        """
-        if self._asked:
-            raise UnknownContentError(f"{self!r} calls itself")
-        self._asked = True
-        try:
-            return content_of(self.py_func, *sorted(self._plain().items()), called=self.calls)
-        finally:
-            self._asked = False
-
-    @property
-    def keepable(self) -> bool:
-        """Whether a store can hold it."""
-        try:
-            return bool(self.content)
-        except UnknownContentError:
-            return False
 
     @cached_property
     def entry(self) -> Any:
@@ -98,18 +54,6 @@ class Compiled:
         from numba.core.target_extension import current_target
 
         return (self.on_card if current_target() == "cuda" else self.inner)._numba_type_
-
-    def _plain(self) -> dict[str, Any]:
-        """Options of Numba, those that are on by default included.
-
-        A function has no `fastmath` and is not inlined by force unless the options say so. Numba would take
-        both from the function that calls it first, and keep the result for all callers: the last bits would
-        depend on what ran before on the machine. Inlining matters even where there is no `fastmath`:
-        where the same product stands in a function and in a caller that fuses its own, LLVM makes one of the
-        two, which is then not fused. With `error_model="numpy"` a division by zero gives inf or nan.
-        """
-        more = {"nopython": True, "error_model": "numpy", "fastmath": False, "forceinline": False}
-        return more | self.options
 
 
 class Law(Compiled):

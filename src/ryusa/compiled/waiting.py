@@ -7,20 +7,16 @@ times what the functions of this process took over what was expected of them.
 """
 
 import time
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from itertools import zip_longest
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from ryusa.compiled import store, tiers
-from ryusa.compiled.content import UnknownContentError, latest
+from ryusa.compiled.content import Compilable, UnknownContentError, latest
 from ryusa.compiled.seconds import Seconds
-
-if TYPE_CHECKING:
-    from ryusa.compiled.function import Compiled
 
 # Seconds for each byte of a function's bytecode and of all that it may call, as the saltation case took on
 # one core of an AMD EPYC (Zen 5): with half of the functions that the text names not needed.
@@ -28,7 +24,7 @@ _A_BYTE = {"inner": (0.09e-3, 0.0), "entry": (0.25e-3, 0.02e-3), "piece": (0.25e
 DIGITS = 16  # of a content that tell it from all others
 _UNSURE = 2.0  # seconds that must have been compiled before their pace counts for as much as the record
 
-_Key = tuple[str, "Compiled"]  # kind (`entry`, `piece` or `inner`) and function
+_Key = tuple[str, Compilable]  # kind (`entry`, `piece` or `inner`) and function
 
 
 @dataclass
@@ -83,7 +79,7 @@ class _Process:
 _now = _Process()
 
 
-def compiled_beside(pieces: list["Compiled"]) -> None:
+def compiled_beside(pieces: Sequence[Compilable]) -> None:
     """Another process has begun to compile pieces, one after the other."""
     end = time.perf_counter()
     for function in pieces:
@@ -151,7 +147,7 @@ def told(listener: Listener, expected: Mapping[str, float] = MappingProxyType({}
 
 
 @contextmanager
-def asked(function: "Compiled", kind: str) -> Generator[None]:
+def asked(function: Compilable, kind: str) -> Generator[None]:
     """Load or compile a function of a kind within this block."""
     own = _Open((kind, function), time.perf_counter(), time.thread_time())
     _now.open.append(own)
@@ -248,20 +244,20 @@ def _expect(key: _Key) -> None:
             _now.left[inside] = by_name.get(f"inner {one.name}", otherwise)
 
 
-def _by_size(kind: str, function: "Compiled") -> float:
+def _by_size(kind: str, function: Compilable) -> float:
     """Seconds that a function is expected to take by its size."""
     own, called = _A_BYTE[kind]
     more = sum(_bytes(one) for one in _reach(function)) if called else 0
     return own * _bytes(function) + called * more
 
 
-def _bytes(function: "Compiled") -> int:
+def _bytes(function: Compilable) -> int:
     return len(function.py_func.__code__.co_code)
 
 
-def _reach(function: "Compiled") -> dict["Compiled", None]:
+def _reach(function: Compilable) -> dict[Compilable, None]:
     """All compiled functions that a function may call, at any depth."""
-    found: dict[Compiled, None] = {}
+    found: dict[Compilable, None] = {}
     open_, function_known = [function], _content(("inner", function))
     while open_ and function_known:
         for one in open_.pop().calls:

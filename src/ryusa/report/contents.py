@@ -22,7 +22,7 @@ from ryusa.study.html import embedded
 from ryusa.view.page import encoded
 
 if TYPE_CHECKING:
-    from ryusa.casefile.derive import Derived
+    from ryusa.casefile.facts import Derived
 
 DPI = 200  # of a picture in the page
 _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page

@@ -2,6 +2,7 @@
 
 from ryusa.results.frames import BodyFrames, Frame, Frames
 from ryusa.results.lazy import LazyFrames
-from ryusa.results.read import Bed, Grains, Planes, Results
+from ryusa.results.presentation import Results
+from ryusa.results.read import Bed, Grains, Planes
 
 __all__ = ["Bed", "BodyFrames", "Frame", "Frames", "Grains", "LazyFrames", "Planes", "Results"]

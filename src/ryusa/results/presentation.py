@@ -1,4 +1,4 @@
-"""What a run shows in a notebook or a script: measures, pictures, pages and tables, made when asked for."""
+"""The results of a run, with the measures, pictures and pages that a notebook or a script asks for."""
 
 import base64
 import html
@@ -14,6 +14,7 @@ import numpy as np
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, called, load
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
+from ryusa.results.read import RunArrays
 from ryusa.spelling import nearest_word
 from ryusa.units import UnitError, quantity, span
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-    from ryusa.results.read import Results
 
 _HEIGHT = 560  # pixels of a page within a notebook
 
@@ -114,95 +114,6 @@ def _in_si(options: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def measured(results: "Results", name: str, options: dict[str, Any]) -> Any:
-    """Give what a measure finds in a run."""
-    entry = _entry(name, MEASURES, "measure")
-    function, given = called(entry), _in_si(options)
-    taken = list(signature(function).parameters)[1:]
-    for one in given:
-        if one not in taken:
-            raise CaseError(
-                one, None, f"{name} does not take it; it takes {', '.join(taken)}", nearest_word(one, taken)
-            )
-    return function(results, **given)
-
-
-def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
-    """Give a picture of a run; the options are its own, or of the measure that it draws."""
-    entry, options = _entry(name, PICTURES, "picture"), _in_si(options)
-    if not entry.measure:
-        return called(entry)(results, **options)[0]
-    of_measure, own = entry.parted(options)
-    return load(entry.function)(measured(results, entry.measure, of_measure), **own)
-
-
-def view_of(results: "Results", options: dict[str, Any]) -> Page:
-    """Give the page with the grains in motion."""
-    return Page(load("ryusa.view.page:view_page")(results, **options))
-
-
-def film_of(results: "Results", kind: str, options: dict[str, Any]) -> FilmFile:
-    """Give a film of the grains."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"film.{kind}"
-        try:
-            load("ryusa.view.film:film")(results, path, **options)
-        except CaseError as error:
-            if error.key != "output":
-                raise
-            raise CaseError("kind", kind, error.allowed) from None
-        return FilmFile(path.read_bytes(), kind)
-
-
-def report_of(runs: Sequence["Results"], size: float) -> Page:
-    """Give the page about some runs."""
-    return Page(load("ryusa.report.page:report_page")(runs, size=size), 2 * _HEIGHT)
-
-
-def xarray_of(results: "Results", frames: slice) -> "Dataset":
-    """Give frames as an xarray Dataset."""
-    xarray = needed("xarray")
-    units = {"x": "m", "v": "m/s", "omega": "rad/s"}
-    held = {
-        name: (("t", "grain", "axis"), getattr(results.frames, name)[frames], {"units": unit})
-        for name, unit in units.items()
-    }
-    held |= {
-        name: ("grain", getattr(results.grains, name), {"units": unit})
-        for name, unit in (("d", "m"), ("m", "kg"))
-    }
-    places = {"t": results.frames.t[frames], "grain": np.arange(results.scene.n_grain), "axis": list("xyz")}
-    about = {
-        "title": str(results.case.get("title", "")),
-        "folder": str(results.folder),
-        "status": results.status,
-    }
-    return xarray.Dataset(held, coords=places, attrs=about)
-
-
-def pandas_of(results: "Results", what: str, options: dict[str, Any]) -> "DataFrame":
-    """Give contacts, energy account or a measure as a pandas DataFrame."""
-    pandas = needed("pandas")
-    if what == "contacts":
-        rows = results.contacts
-        columns: dict[str, Any] = {}
-        for name in rows.dtype.names or ():
-            if rows[name].ndim == 1:
-                columns[name] = rows[name]
-            else:
-                columns |= {f"{name}_{axis}": rows[name][:, k] for k, axis in enumerate("xyz")}
-        return pandas.DataFrame(columns)
-    found = measured(results, what, options)
-    averages = getattr(found, "averages", None)
-    return pandas.DataFrame(found.rows() if averages is None else averages.rows())
-
-
-def summary_table(results: "Results") -> str:
-    """Give what `ryusa inspect` prints as HTML."""
-    rows = load("ryusa.running.inspection:inspection_rows")(results)
-    return html_table((), [(heading, text) for heading, text in rows if heading != "next"])
-
-
 def _entry(name: str, entries: Sequence[Any], kind: str) -> Any:
     known: dict[str, MeasureEntry | PictureEntry] = {one.name: one for one in entries}
     if name not in known:
@@ -220,3 +131,137 @@ def needed(package: str) -> Any:
         return import_module(package)
     except ImportError:
         raise ResultsError(f"{package} is not installed; pip install 'ryusa[notebook]' adds it") from None
+
+
+class Results(RunArrays):
+    """The results of a run, read-only. Open the folder again to see what was written since."""
+
+    def measure(self, name: str, **options: Any) -> Any:
+        """Measure the run, as `ryusa measure RUN name` does.
+
+        Parameters
+        ----------
+        name : of a measure, such as "transport"; `ryusa measure --help` lists them.
+        options : keywords of `ryusa.measure.<name>`, such as begin [s].
+
+        Raises
+        ------
+        ResultsError : no such measure, or the run does not hold what it needs.
+        """
+        entry = _entry(name, MEASURES, "measure")
+        function, given = called(entry), _in_si(options)
+        taken = list(signature(function).parameters)[1:]
+        for one in given:
+            if one not in taken:
+                allowed = f"{name} does not take it; it takes {', '.join(taken)}"
+                raise CaseError(one, None, allowed, nearest_word(one, taken))
+        return function(self, **given)
+
+    def draw(self, name: str, **options: Any) -> "Figure":
+        """Draw a picture of the run, as `ryusa draw RUN name` does; a notebook shows the figure.
+
+        Parameters
+        ----------
+        name : of a picture, such as "tracks"; `ryusa draw --help` lists them.
+        options : keywords of the picture, or of the measure that it draws.
+
+        Raises
+        ------
+        ResultsError : no such picture, or the run does not hold what it needs.
+        """
+        entry, options = _entry(name, PICTURES, "picture"), _in_si(options)
+        if not entry.measure:
+            return called(entry)(self, **options)[0]
+        of_measure, own = entry.parted(options)
+        return load(entry.function)(self.measure(entry.measure, **of_measure), **own)
+
+    def view(self, **options: Any) -> Page:
+        """Give the page with the grains in motion that `ryusa view` writes; a notebook shows it.
+
+        Parameters
+        ----------
+        options : begin and end of the window [s], and the largest size of the page [B].
+        """
+        return Page(load("ryusa.view.page:view_page")(self, **options))
+
+    def film(self, kind: str = "webp", **options: Any) -> FilmFile:
+        """Give the film of the grains that `ryusa film` writes; a notebook shows it.
+
+        Parameters
+        ----------
+        kind : "webp", "avif", "gif" or "mp4".
+        options : view, colour, begin and end of the window [s], speed or frames, fps, size (width, height)
+            in pixels, and the grain to follow, as of `ryusa film`.
+
+        Raises
+        ------
+        CaseError : an option out of its range, or a kind that cannot be written here.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"film.{kind}"
+            try:
+                load("ryusa.view.film:film")(self, path, **options)
+            except CaseError as error:
+                if error.key != "output":
+                    raise
+                raise CaseError("kind", kind, error.allowed) from None
+            return FilmFile(path.read_bytes(), kind)
+
+    def report(self, *others: "Results", size: float = 1.0e7) -> Page:
+        """Give the page that `ryusa report` writes, with other runs beside this one; size in bytes."""
+        return Page(load("ryusa.report.page:report_page")((self, *others), size=size), 2 * _HEIGHT)
+
+    def to_xarray(self, frames: slice = slice(None)) -> "Dataset":
+        """Give frames as an xarray Dataset in SI: x, v, omega over t, grain and axis; d and m over grain.
+
+        Raises
+        ------
+        ResultsError : xarray is not installed.
+        """
+        xarray = needed("xarray")
+        units = {"x": "m", "v": "m/s", "omega": "rad/s"}
+        held = {
+            name: (("t", "grain", "axis"), getattr(self.frames, name)[frames], {"units": unit})
+            for name, unit in units.items()
+        }
+        held |= {
+            name: ("grain", getattr(self.grains, name), {"units": unit})
+            for name, unit in (("d", "m"), ("m", "kg"))
+        }
+        places = {"t": self.frames.t[frames], "grain": np.arange(self.scene.n_grain), "axis": list("xyz")}
+        about = {
+            "title": str(self.case.get("title", "")),
+            "folder": str(self.folder),
+            "status": self.status,
+        }
+        return xarray.Dataset(held, coords=places, attrs=about)
+
+    def to_pandas(self, what: str = "contacts", **options: Any) -> "DataFrame":
+        """Give a table as a pandas DataFrame in SI.
+
+        Parameters
+        ----------
+        what : "contacts", or a measure: its averages where it has some, else its rows.
+        options : of the measure.
+
+        Raises
+        ------
+        ResultsError : pandas is not installed, or there is no such measure.
+        """
+        pandas = needed("pandas")
+        if what == "contacts":
+            rows = self.contacts
+            columns: dict[str, Any] = {}
+            for name in rows.dtype.names or ():
+                if rows[name].ndim == 1:
+                    columns[name] = rows[name]
+                else:
+                    columns |= {f"{name}_{axis}": rows[name][:, k] for k, axis in enumerate("xyz")}
+            return pandas.DataFrame(columns)
+        found = self.measure(what, **options)
+        averages = getattr(found, "averages", None)
+        return pandas.DataFrame(found.rows() if averages is None else averages.rows())
+
+    def _repr_html_(self) -> str:
+        rows = load("ryusa.running.inspection:inspection_rows")(self)
+        return html_table((), [(heading, text) for heading, text in rows if heading != "next"])

@@ -10,7 +10,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import h5py
 import numpy as np
@@ -25,26 +25,9 @@ from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import Part
 from ryusa.results.place import refuse_other
-from ryusa.results.presentation import (
-    FilmFile,
-    Page,
-    drawn,
-    film_of,
-    measured,
-    pandas_of,
-    report_of,
-    summary_table,
-    view_of,
-    xarray_of,
-)
 from ryusa.results.row import RowFrames, read_row
 from ryusa.results.scene_file import read_scene
 from ryusa.results.water import WaterFrames, read_water
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from pandas import DataFrame
-    from xarray import Dataset
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
@@ -78,8 +61,8 @@ class Planes:
     active: NDArray[np.bool_]
 
 
-class Results:
-    """The results of a run, read-only. Open the folder again to see what was written since."""
+class RunArrays:
+    """What a run folder holds, read-only."""
 
     def __init__(self, folder: Path) -> None:
         """Use `Results.open`."""
@@ -101,8 +84,8 @@ class Results:
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
         self.bodies = None if (clumps := self.scene.bodies) is None else BodyFrames(self._parts, clumps.n)
 
-    @staticmethod
-    def open(folder: str | os.PathLike[str]) -> "Results":
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str]) -> Self:
         """Open a run folder.
 
         Raises
@@ -111,7 +94,7 @@ class Results:
         """
         path = Path(folder)
         refuse_other(path)
-        return Results(path)
+        return cls(path)
 
     @property
     def status(self) -> str:
@@ -207,88 +190,6 @@ class Results:
         """Return the scene at time `t` [s]; it changes with the timeline, and walls with their servos."""
         scene = self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
         return scene if not scene.has_servo else on_way(scene, self.frames.t, self.wall_travel, t)
-
-    def measure(self, name: str, **options: Any) -> Any:
-        """Measure the run, as `ryusa measure RUN name` does.
-
-        Parameters
-        ----------
-        name : of a measure, such as "transport"; `ryusa measure --help` lists them.
-        options : keywords of `ryusa.measure.<name>`, such as begin [s].
-
-        Raises
-        ------
-        ResultsError : no such measure, or the run does not hold what it needs.
-        """
-        return measured(self, name, options)
-
-    def draw(self, name: str, **options: Any) -> "Figure":
-        """Draw a picture of the run, as `ryusa draw RUN name` does; a notebook shows the figure.
-
-        Parameters
-        ----------
-        name : of a picture, such as "tracks"; `ryusa draw --help` lists them.
-        options : keywords of the picture, or of the measure that it draws.
-
-        Raises
-        ------
-        ResultsError : no such picture, or the run does not hold what it needs.
-        """
-        return drawn(self, name, options)
-
-    def view(self, **options: Any) -> Page:
-        """Give the page with the grains in motion that `ryusa view` writes; a notebook shows it.
-
-        Parameters
-        ----------
-        options : begin and end of the window [s], and the largest size of the page [B].
-        """
-        return view_of(self, options)
-
-    def film(self, kind: str = "webp", **options: Any) -> FilmFile:
-        """Give the film of the grains that `ryusa film` writes; a notebook shows it.
-
-        Parameters
-        ----------
-        kind : "webp", "avif", "gif" or "mp4".
-        options : view, colour, begin and end of the window [s], speed or frames, fps, size (width, height)
-            in pixels, and the grain to follow, as of `ryusa film`.
-
-        Raises
-        ------
-        CaseError : an option out of its range, or a kind that cannot be written here.
-        """
-        return film_of(self, kind, options)
-
-    def report(self, *others: "Results", size: float = 1.0e7) -> Page:
-        """Give the page that `ryusa report` writes, with other runs beside this one; size in bytes."""
-        return report_of((self, *others), size)
-
-    def to_xarray(self, frames: slice = slice(None)) -> "Dataset":
-        """Give frames as an xarray Dataset in SI: x, v, omega over t, grain and axis; d and m over grain.
-
-        Raises
-        ------
-        ResultsError : xarray is not installed.
-        """
-        return xarray_of(self, frames)
-
-    def to_pandas(self, what: str = "contacts", **options: Any) -> "DataFrame":
-        """Give a table as a pandas DataFrame in SI.
-
-        Parameters
-        ----------
-        what : "contacts", or a measure: its averages where it has some, else its rows.
-        options : of the measure.
-
-        Raises
-        ------
-        ResultsError : pandas is not installed, or there is no such measure.
-        """
-        return pandas_of(self, what, options)
-
-    def _repr_html_(self) -> str:
-        return summary_table(self)
 
     def __repr__(self) -> str:
         return (

@@ -23,7 +23,7 @@ def files_beside(case: "Case") -> dict[str, Path]:
     sieve, found = sieve_file(case), dict[str, Path]()
     if case.path is not None:
         names = [case.build.file] if isinstance(case.build, TableSection) else []
-        names += clump_files(case)
+        names += clump_files(case.grains, case.shapes)
         names += [wall.file for wall in case.walls if wall.file is not None]
         names += line_files(case)
         names += [feed.sedigraph for feed in case.feeds if isinstance(feed.sedigraph, str)]
@@ -51,7 +51,7 @@ def made_files(case: "Case") -> dict[str, bytes]:
     from ryusa.results import schema
 
     found = dict[str, bytes]()
-    of_run = isinstance(case.build, RunSection) or bed_of_run(case) is not None
+    of_run = isinstance(case.build, RunSection) or bed_of_run(case.build) is not None
     table = table_of(case) if of_run else None
     if table is not None:
         found[schema.START] = csv_head(table) + csv_frame(table)

@@ -5,7 +5,6 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import has_clumps
@@ -99,9 +98,11 @@ def expected_of(*, grains: bool, clumps: bool, column: bool, row: bool) -> dict[
 
 def compiling_row(case: "Case") -> ExplainRow:
     """Row of `ryusa check` of the time that compiling takes at most."""
-    row = row_keys(case) is not None
+    row = case.row is not None
     column = case.water is not None and case.water.profile == "column"
-    expected = expected_of(grains=not water_alone(case), clumps=has_clumps(case), column=column, row=row)
+    expected = expected_of(
+        grains=not water_alone(case), clumps=has_clumps(case.grains), column=column, row=row
+    )
     seconds = waiting.at_most(expected)
     origin = "before the first step, once for this kind of case: what is kept of earlier runs takes none"
     return ExplainRow("cost", "compiling", seconds, "s", f"up to {_round(seconds)} s", origin)

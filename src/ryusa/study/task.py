@@ -22,7 +22,7 @@ from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
+    from ryusa.casefile.facts import Derived
     from ryusa.casefile.wall_time import WallTime
 
 _BEGIN = 0.14  # s to start, open and measure a short run in a process that has compiled its code

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, FromFile
 from ryusa.casefile.builders.table import bed_of_run
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import derive
 from ryusa.casefile.row.reach import KEY
 from ryusa.casefile.row.reach_source import run_of_reach
@@ -51,7 +50,7 @@ def refuse_if_not_softenable(case: "Case") -> None:
             KEY, run, "cannot be softened: its reach has the stiffness of the case, and softer grains need a "
             "reach of their own",
         )  # fmt: skip
-    bed = bed_of_run(case)
+    bed = bed_of_run(case.build)
     if isinstance(case.build, FromFile) or bed is not None:
         key, value = ("build.kind", case.build.kind) if bed is None else ("build.bed.run", bed.run)
         raise CaseError(
@@ -124,5 +123,5 @@ def _time(case: "Case") -> dict[str, str]:
 def _interval(case: "Case", soft: "Case") -> dict[str, str]:
     if case.water is None or case.water.profile != "column":
         return {}
-    steps = column_keys(case).interval * derive(case).dt / derive(soft).dt
+    steps = case.column.interval * derive(case).dt / derive(soft).dt
     return {"water.column.interval": str(max(round(steps), 1))}

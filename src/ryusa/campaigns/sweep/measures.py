@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ryusa.casefile.builders.values import periodic
-from ryusa.casefile.record import events_of
+from ryusa.casefile.record.values import events_of
 from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import shapes_of
 from ryusa.catalogue import MEASURES, MeasureEntry, called

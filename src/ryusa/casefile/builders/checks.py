@@ -1,7 +1,7 @@
 """Checks of [build] that need more than one key."""
 
+import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.box import hole
 from ryusa.casefile.builders.inside import enclosure_of
@@ -10,11 +10,12 @@ from ryusa.casefile.builders.schema import (
     DropSection,
     FillSection,
     FlumeSection,
+    FromFile,
     PackingSection,
     SaltationSection,
     TableSection,
 )
-from ryusa.casefile.builders.table import made_of, table_of
+from ryusa.casefile.builders.table import key_of, made_of, period_of, table_of
 from ryusa.casefile.builders.values import (
     FEWEST_PERIODS,
     bed_opening,
@@ -27,17 +28,17 @@ from ryusa.casefile.builders.values import (
     room,
     sizes,
 )
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import graded, spread_of
+from ryusa.casefile.grains.schema import spread_of
+from ryusa.casefile.grains.values import graded
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
 from ryusa.model.enclosure import MeshInside
 from ryusa.spelling import nearest_word
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 SHORTEST = 8  # largest diameters in a wave of the bed, so that its cosine is seen
 _FOREIGN = ("lammps-dump", "lammps-data", "xyz")
@@ -49,7 +50,7 @@ _HAS = {  # key of a table: formats in which it has an effect
 }
 
 
-def check_builder(case: "Case") -> Iterator[CaseError]:
+def check_builder(case: Case) -> Iterator[CaseError]:
     """Find keys of the builder that are missing, have no effect or contradict other sections."""
     build = case.build
     _, ratio = spread_of(case.grains)
@@ -58,7 +59,7 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
     if isinstance(build, DropSection):
         if build.height is None and build.speed == 0.0:
             yield CaseError("build.height", None, "missing; a drop needs height or speed")
-        if build.spin != 0.0 and not may_rotate(case):
+        if build.spin != 0.0 and not may_rotate(case.motion, case.timeline):
             yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
         if abs(build.offset) >= reference_diameter(case):
             yield CaseError(
@@ -67,11 +68,12 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         if build.offset != 0.0 and build.partner == "plane":
             yield CaseError("build.offset", build.offset, "has no effect with partner 'plane'")
     if isinstance(build, (DropSection, SaltationSection)) and not case.motion.plane:
-        lanes = build.copies if isinstance(build, DropSection) else build.starts
-        if lanes > 1:
-            key = "build.copies" if isinstance(build, DropSection) else "build.starts"
+        key = "copies" if isinstance(build, DropSection) else "starts"
+        if (lanes := getattr(build, key)) > 1:
             yield CaseError(
-                key, lanes, "needs motion.plane = true; in three dimensions grains of two lanes could meet"
+                f"build.{key}",
+                lanes,
+                "needs motion.plane = true; in three dimensions grains of two lanes could meet",
             )
     if isinstance(build, PackingSection | BoxSection) and case.motion.plane and build.rows > 1:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
@@ -82,7 +84,7 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
             if given(build, key) and build.format not in formats:
                 allowed = f"has no effect with format '{build.format}', only with {', '.join(formats)}"
                 yield CaseError(f"build.{key}", getattr(build, key), allowed)
-    if made_of(case):
+    if made_of(case.build):
         yield from _made_of(case)
     if isinstance(build, FlumeSection):
         yield from _flume(case, build)
@@ -94,17 +96,17 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _fill(case, build)
 
 
-def _made_of(case: "Case") -> Iterator[CaseError]:
+def _made_of(case: Case) -> Iterator[CaseError]:
     table = table_of(case)
     assert table is not None
     there = sorted({one for one, fixed in zip(table.group, table.fixed, strict=True) if one and not fixed})
-    for group in made_of(case):
+    for group in made_of(case.build):
         if group not in there:
             text = f"is no group of free grains of {table.name}, which has {', '.join(there) or 'none'}"
             yield CaseError(f"build.made_of.{group}", None, text, nearest_word(group, there))
 
 
-def check_fill(case: "Case") -> Iterator[CaseError]:
+def check_fill(case: Case) -> Iterator[CaseError]:
     """Find a builder 'fill' that does not say where its grains go; most checks need their number."""
     build = case.build
     if not isinstance(build, FillSection):
@@ -123,13 +125,13 @@ def check_fill(case: "Case") -> Iterator[CaseError]:
         yield CaseError("build.inside", build.inside, "needs motion.plane = false, as [[walls]] do")
         return
     try:
-        fill_inside(case)
+        fill_inside(case, build)
     except CaseError as error:
         yield error
 
 
-def _fill(case: "Case", build: FillSection) -> Iterator[CaseError]:
-    most = fill_most(case)
+def _fill(case: Case, build: FillSection) -> Iterator[CaseError]:
+    most = fill_most(case, build)
     if build.number is not None and build.most is not None:
         yield CaseError("build.number", build.number, "excludes build.most; give only one of the two")
     elif build.number is not None and 0 < most < build.number:
@@ -157,9 +159,9 @@ def _fill(case: "Case", build: FillSection) -> Iterator[CaseError]:
             yield CaseError("build.high", list(high), text)
 
 
-def _empty(case: "Case", build: FillSection) -> CaseError:
+def _empty(case: Case, build: FillSection) -> CaseError:
     """A wall that holds no grain, and why it may be."""
-    enclosure, least = enclosure_of(case), room(case) * (1.0 + build.gap)
+    enclosure, least = enclosure_of(case, build), room(case) * (1.0 + build.gap)
     across = " x ".join(f"{one:.3g}" for one in enclosure.high - enclosure.low)
     whole = ", the cell of a sieve curve as a whole" if graded(case) else ""
     text = (
@@ -173,7 +175,7 @@ def _empty(case: "Case", build: FillSection) -> CaseError:
     return CaseError("build.inside", build.inside, text)
 
 
-def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
+def _flume(case: Case, build: FlumeSection) -> Iterator[CaseError]:
     plane, (_, across), (_, _, largest) = case.motion.plane, periodic(case), sizes(case)
     if plane and build.width is not None:
         yield CaseError(
@@ -187,12 +189,12 @@ def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
     ):
         if value is not None and value < least:
             yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
-    if flume_count(case) < 1:
+    if flume_count(case, build) < 1:
         yield CaseError("build.layers", build.layers, "gives no grain; take more layers or a longer flume")
     yield from _waves(case, build)
 
 
-def _waves(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
+def _waves(case: Case, build: FlumeSection) -> Iterator[CaseError]:
     """Find waves without a height or a height without waves, too many of them, and troughs without grains."""
     if build.waves == 0 and build.wave_height == 0.0:
         return
@@ -215,7 +217,7 @@ def _waves(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _bed(case: "Case", build: PackingSection | FlumeSection) -> Iterator[CaseError]:
+def _bed(case: Case, build: PackingSection | FlumeSection) -> Iterator[CaseError]:
     """Find a sieve curve whose finest grains fall through the bed of fixed grains."""
     finest, opening = sizes(case)[1], bed_opening(case)
     if finest > opening or any(plane.normal[2] > 0.0 for plane in case.planes):
@@ -229,7 +231,7 @@ def _bed(case: "Case", build: PackingSection | FlumeSection) -> Iterator[CaseErr
     )
 
 
-def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
+def _box(case: Case, build: BoxSection) -> Iterator[CaseError]:
     if build.floor == "plane":
         for key in ("run_out", "drop", "floor_height"):
             value = getattr(build, key)
@@ -261,3 +263,45 @@ def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
                 change.remove,
                 f"lets grains fall beside the floor; give {', '.join([*ways, 'a plane in [[planes]]'])}",
             )
+
+
+def check_domain(case: Case, derived: Derived) -> Iterator[CaseError]:
+    """Find periods that are too short or set by the builder, and corners in the wrong order."""
+    least = FEWEST_PERIODS * derived.room
+    from_file = isinstance(case.build, FromFile)
+    periods = period_of(case) if from_file else (case.domain.period_x, case.domain.period_y)
+    for key, period in zip(("period_x", "period_y"), periods, strict=True):
+        given = getattr(case.domain, key)
+        if period is not None and period < least:
+            yield CaseError(
+                f"domain.{key}", period, f"must be at least {FEWEST_PERIODS} largest diameters, {least:.4g} m"
+            )
+        if given is not None and not from_file:
+            yield CaseError(
+                f"domain.{key}",
+                given,
+                f"is set by builder '{case.build.kind}' itself; give it with builders 'table' and 'run' only",
+            )
+    if isinstance(case.build, FromFile):
+        yield from _against_file(case)
+    if case.motion.plane and case.domain.period_y is not None:
+        yield CaseError("domain.period_y", case.domain.period_y, "has no effect in a plane scene")
+    low, high = case.domain.low, case.domain.high
+    if low is not None and high is not None and any(a >= b for a, b in zip(low, high, strict=True)):
+        yield CaseError("domain.low", list(low), "must lie below domain.high in every direction")
+
+
+def _against_file(case: Case) -> Iterator[CaseError]:
+    """Find periods that contradict those of the file."""
+    table = table_of(case)
+    if table is None or table.period is None:
+        return
+    for key, stated in zip(("period_x", "period_y"), table.period, strict=True):
+        given = getattr(case.domain, key)
+        if given is not None and not math.isclose(given, stated, rel_tol=1e-12):
+            there = f"{stated:.12g} m" if math.isfinite(stated) else "open"
+            yield CaseError(
+                f"domain.{key}", given, f"differs from {table.name}, which is {there}; leave it out"
+            )
+    if case.motion.plane and math.isfinite(table.period[1]):
+        yield CaseError(key_of(case.build), table.name, "is periodic in y, which a plane scene cannot be")

@@ -4,22 +4,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.mesh import Mesh, mesh_of
+from ryusa.casefile.case import Case
+from ryusa.casefile.walls.mesh import Mesh, mesh_of
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
 from ryusa.model.arrays import Floats
 from ryusa.model.closed_mesh import MeshFault
 from ryusa.model.enclosure import ROUND_OFF, CylinderInside, Enclosure, Grid, MeshInside
 from ryusa.model.walls import Ints
 from ryusa.spelling import nearest_word
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.walls import WallSection
 
 MOST_CELLS = 10_000_000  # of the lattice round a wall
 _FEW = 4096  # cells up to which the lattice is moved by half a cell to see where most grains fit
@@ -43,15 +40,14 @@ class CellsInside:
     free: Floats
 
 
-def enclosure_of(case: "Case") -> Enclosure:
+def enclosure_of(case: Case, build: FillSection) -> Enclosure:
     """The inside of the wall that builder 'fill' names.
 
     Raises
     ------
     CaseError : there is no such wall, it has no inside, or its mesh does not say what is inside.
     """
-    build = case.build
-    assert isinstance(build, FillSection) and build.inside is not None
+    assert build.inside is not None
     names = [wall.name for wall in case.walls]
     if build.inside not in names:
         allowed = f"must be one of [[walls]]: {', '.join(names) or 'there is none'}"
@@ -69,12 +65,12 @@ def enclosure_of(case: "Case") -> Enclosure:
         raise CaseError("build.inside", wall.name, text.replace("a ridges", "a plate with ridges"))
     _refuse_missing(wall, key, ("file", "unit"))
     try:
-        return _inside_of_mesh(mesh_of(case, wall, key))
+        return _inside_of_mesh(mesh_of(case.folder, wall, key))
     except MeshFault as error:
         raise CaseError("build.inside", wall.name, f"{error}; {_REMEDY}, or mend the mesh") from None
 
 
-def _refuse_missing(wall: "WallSection", key: str, needs: tuple[str, ...]) -> None:
+def _refuse_missing(wall: WallSection, key: str, needs: tuple[str, ...]) -> None:
     for one in needs:
         if getattr(wall, one) is None:
             text = f"missing; shape '{wall.shape}' needs {', '.join(needs)}"

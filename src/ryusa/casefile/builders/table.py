@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders.schema import BedOfRunSection, RunSection, TableSection
-from ryusa.casefile.files import contents, folder_of, inside
+from ryusa.casefile.builders.schema import BedOfRunSection, BuildSection, RunSection, TableSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError, ResultsError
@@ -23,39 +24,38 @@ from ryusa.model.arrays import Bools, Floats
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
     from ryusa.results import Results
 
 _SAME = 1e-9  # relative difference of densities that are one
 _LIGHTEST, _HEAVIEST = 1.0, 1.0e5  # densities of a grain [kg/m3]
 
 
-def table_of(case: "Case") -> GrainTable | None:
+def table_of(case: Case) -> GrainTable | None:
     """Read the grains that a case names; None for other builders."""
     if isinstance(case.build, TableSection):
         return _table_of_file(case, case.build)
     if isinstance(case.build, RunSection):
-        return _table_of_run(case, "build.folder", case.build.folder, case.build.at)
-    bed = bed_of_run(case)
-    return None if bed is None else _table_of_run(case, "build.bed.run", bed.run, bed.at)
+        return _table_of_run(case.folder, "build.folder", case.build.folder, case.build.at)
+    bed = bed_of_run(case.build)
+    return None if bed is None else _table_of_run(case.folder, "build.bed.run", bed.run, bed.at)
 
 
-def bed_of_run(case: "Case") -> BedOfRunSection | None:
+def bed_of_run(build: BuildSection) -> BedOfRunSection | None:
     """The run from which builder 'stream' takes its bed; None where it lays one, or none."""
-    bed = case.build.bed if case.build.kind == "stream" else None
+    bed = build.bed if build.kind == "stream" else None
     return bed if isinstance(bed, BedOfRunSection) else None
 
 
-def key_of(case: "Case") -> str:
+def key_of(build: BuildSection) -> str:
     """Key that names the file or folder of the first grains; "build" for builders that lay them."""
-    if isinstance(case.build, TableSection):
+    if isinstance(build, TableSection):
         return "build.file"
-    if isinstance(case.build, RunSection):
+    if isinstance(build, RunSection):
         return "build.folder"
-    return "build" if bed_of_run(case) is None else "build.bed.run"
+    return "build" if bed_of_run(build) is None else "build.bed.run"
 
 
-def period_of(case: "Case") -> tuple[float, float]:
+def period_of(case: Case) -> tuple[float, float]:
     """Periods in x and y where grains come from a file [m], inf where open: the case's, or the file's."""
     table = table_of(case)
     stated = table.period if table is not None else None
@@ -64,9 +64,9 @@ def period_of(case: "Case") -> tuple[float, float]:
     return (file_x if x is None else x, file_y if y is None else y)
 
 
-def made_of(case: "Case") -> dict[str, str]:
+def made_of(build: BuildSection) -> dict[str, str]:
     """Materials of the first grains by their group in the file."""
-    return case.build.made_of if isinstance(case.build, TableSection | RunSection) else {}
+    return build.made_of if isinstance(build, TableSection | RunSection) else {}
 
 
 def rows_of_material(table: GrainTable, made: dict[str, str], name: str | None) -> Bools:
@@ -74,14 +74,14 @@ def rows_of_material(table: GrainTable, made: dict[str, str], name: str | None) 
     return ~table.fixed & np.array([made.get(group) == name for group in table.group], np.bool_)
 
 
-def area_of_file(case: "Case") -> float | None:
+def area_of_file(case: Case) -> float | None:
     """Area of bed under a column of water [m2], where the file states it: that of a channel between walls."""
     table = table_of(case)
     return table.bed_area if table is not None else None
 
 
-def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
-    path = inside(case, "build.file", build.file)
+def _table_of_file(case: Case, build: TableSection) -> GrainTable:
+    path = inside(case.folder, "build.file", build.file)
     options = ReadOptions(
         frame=build.frame,
         length=quantity(f"1 {build.length_unit}", "m"),
@@ -90,7 +90,7 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
         stated=given(build, "length_unit") and given(build, "time_unit"),
         fixed_types=build.fixed_types,
     )
-    table = contents(case, "build.file", build.file, path, partial(_read, build.format, options))
+    table = contents(case.folder, "build.file", build.file, path, partial(_read, build.format, options))
     heavy = {"density", "m"} & table.columns.keys()
     if heavy and given(build, "length_unit") and not given(build, "mass_unit"):
         # a file in centimetres may count in grams
@@ -116,7 +116,7 @@ def _units_not_needed(build: TableSection, table: GrainTable) -> Iterator[str]:
             yield f"build.{key} has no effect: {table.name} states no {what}"
 
 
-def densities_of_file(case: "Case") -> Floats | None:
+def densities_of_file(case: Case) -> Floats | None:
     """Density of each row of a table of grains [kg/m3], by its densities or masses.
 
     None where the table states neither, or that of the case, and where the case has materials.
@@ -141,7 +141,7 @@ def densities_of_file(case: "Case") -> Floats | None:
     return np.where(free, found, case.grains.density)
 
 
-def lightest_in_file(case: "Case") -> "Case":
+def lightest_in_file(case: Case) -> Case:
     """The case with the least density of its free grains, where a table states densities."""
     found = densities_of_file(case)
     if found is None:
@@ -155,14 +155,14 @@ def _read(kind: str, options: ReadOptions, path: Path, name: str, _changed: int,
     return read_grains(path, name, kind, options)
 
 
-def _table_of_run(case: "Case", key: str, name: str, at: float | None) -> GrainTable:
+def _table_of_run(folder: Path, key: str, name: str, at: float | None) -> GrainTable:
     """Read the frame nearest to a time [s], or the last; a run folder holds what its own run started from."""
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, key, name)
+    path = inside(folder, key, name)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
-        return contents(case, key, schema.START, start, partial(_read, "csv", ReadOptions()))
+        return contents(folder, key, schema.START, start, partial(_read, "csv", ReadOptions()))
     try:
         changed = (path / schema.PARTS).stat().st_mtime_ns
     except OSError:

@@ -2,7 +2,6 @@
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,18 +20,16 @@ from ryusa.casefile.builders.schema import (
     StreamSection,
 )
 from ryusa.casefile.builders.table import made_of, period_of, rows_of_material, table_of
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.feeds.values import fed_in_all
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
-from ryusa.casefile.motion import slab_width
+from ryusa.casefile.grains.schema import spread_of
+from ryusa.casefile.grains.values import CUT, graded, laid_mean_cube, laid_shares, sized_as, slab_width
 from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span
 from ryusa.casefile.shape import extent
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 FEWEST_PERIODS = 3  # largest diameters that a period must hold
 PLATE_COUNTED = 1e4  # radius of a plate in diameters up to which its grains are counted one by one
@@ -41,7 +38,7 @@ _ROUNDED = 4.0  # cells of the lattice of builder 'fill'
 Corner = tuple[float, float, float]
 
 
-def sizes(case: "Case") -> tuple[float, float, float]:
+def sizes(case: Case) -> tuple[float, float, float]:
     """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
     table = table_of(case)
     ranges = [drawn_range(case, name) for name in drawn_materials(case)]
@@ -53,31 +50,31 @@ def sizes(case: "Case") -> tuple[float, float, float]:
     return reference_diameter(case), min(low for low, _ in ranges), max(high for _, high in ranges)
 
 
-def drawn_materials(case: "Case") -> set[str | None]:
+def drawn_materials(case: Case) -> set[str | None]:
     """Materials of which the builder or a feed draws the sizes; None is that of [grains]."""
-    laid = set(laid_shares(case)) if table_of(case) is None else set[str | None]()
+    laid = set(laid_shares(case.grains, case.build)) if table_of(case) is None else set[str | None]()
     fed = {feed.material for feed in case.feeds if feed.brings}
     return laid | fed or ({None} if table_of(case) is None else set[str | None]())
 
 
-def size_range(case: "Case", name: str | None) -> tuple[float, float]:
+def size_range(case: Case, name: str | None) -> tuple[float, float]:
     """Smallest and largest diameter of the free grains of a material [m]."""
     table = table_of(case)
     if table is None:
         return drawn_range(case, name)
-    there = table.column("d")[rows_of_material(table, made_of(case), name)]
+    there = table.column("d")[rows_of_material(table, made_of(case.build), name)]
     ranges = [(float(there.min()), float(there.max()))] if len(there) else []
     if not ranges or name in {feed.material for feed in case.feeds if feed.brings}:
         ranges.append(drawn_range(case, name))
     return min(low for low, _ in ranges), max(high for _, high in ranges)
 
 
-def room(case: "Case") -> float:
+def room(case: Case) -> float:
     """Diameter of the sphere that holds any of the free grains, however it is turned [m]."""
     return sizes(case)[2] * extent(case)
 
 
-def drawn_range(case: "Case", name: str | None) -> tuple[float, float]:
+def drawn_range(case: Case, name: str | None) -> tuple[float, float]:
     """Smallest and largest diameter of the distribution of a material [m]; None is that of [grains]."""
     sized = sized_as(case, name)
     d, grading = reference_diameter(sized), grading_of(sized)
@@ -92,13 +89,13 @@ def drawn_range(case: "Case", name: str | None) -> tuple[float, float]:
     return d * math.exp(-0.5 * width * width - CUT * width), d * math.exp(-0.5 * width * width + CUT * width)
 
 
-def counts(case: "Case") -> tuple[int, int, bool]:
+def counts(case: Case) -> tuple[int, int, bool]:
     """Free grains with those that feeds bring, fixed grains, and whether two free grains can meet."""
     free, fixed, meet = built_counts(case)
     return free + fed_in_all(case), fixed, meet or bool(case.feeds)
 
 
-def built_counts(case: "Case") -> tuple[int, int, bool]:
+def built_counts(case: Case) -> tuple[int, int, bool]:
     """Free grains at the start, fixed grains, and whether two of these free grains can meet."""
     build = case.build
     table = table_of(case)
@@ -118,17 +115,17 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         n_fixed = box_plan(build, sizes(case)[0], room(case), case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
-        return fill_count(case), plate_count(case, build.plate), True
+        return fill_count(case, build), plate_count(case, build.plate), True
     if isinstance(build, StreamSection):
         return stream_count(case), 0, True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
-        return flume_count(case), bed[0] * bed[1], True
+        return flume_count(case, build), bed[0] * bed[1], True
     assert isinstance(build, PackingSection)
     return build.columns * build.rows * build.layers, bed[0] * bed[1], True
 
 
-def plate_of(case: "Case", radius: float | None) -> NDArray[np.float64]:
+def plate_of(case: Case, radius: float | None) -> NDArray[np.float64]:
     """Centres of touching grains of mean diameter within a radius [m], at z = -d/2; shape (n, 3)."""
     if radius is None:
         return np.zeros((0, 3))
@@ -142,7 +139,7 @@ def plate_of(case: "Case", radius: float | None) -> NDArray[np.float64]:
     return np.stack([d * (i + 0.5 * j), d * math.sqrt(0.75) * j, np.full(len(i), -0.5 * d)], -1)
 
 
-def plate_count(case: "Case", radius: float | None) -> int:
+def plate_count(case: Case, radius: float | None) -> int:
     """Number of centres of `plate_of`, without laying them; by area for a radius of over 10,000 diameters."""
     if radius is None:
         return 0
@@ -165,7 +162,7 @@ def _plate_rows(ratio: float, plane: bool) -> tuple[NDArray[np.int64], NDArray[n
     return j[kept], low[kept], high[kept]
 
 
-def bed_counts(case: "Case") -> tuple[int, int]:
+def bed_counts(case: Case) -> tuple[int, int]:
     """Fixed grains of the bed of a packing or a flume along x and y; (0, 0) over a plane."""
     build = case.build
     if isinstance(build, FlumeSection):
@@ -178,7 +175,7 @@ def bed_counts(case: "Case") -> tuple[int, int]:
     return n_x, 1 if case.motion.plane else n_y
 
 
-def bed_opening(case: "Case") -> float:
+def bed_opening(case: Case) -> float:
     """Largest grain that could slip through the fixed grains of the bed of a packing or a flume [m].
 
     Amid four grains of a rectangle in three dimensions, between two in a plane scene, the highest beside the
@@ -198,26 +195,23 @@ def bed_opening(case: "Case") -> float:
     return math.sqrt((long / n_x) ** 2 + across**2 + rise**2) - d
 
 
-def _side_by_side(case: "Case", build: FlumeSection) -> tuple[int, int]:
+def _side_by_side(case: Case, build: FlumeSection) -> tuple[int, int]:
     """Mean grains that fit length and width of a flume."""
     d = reference_diameter(case)
     return max(int(build.length / d * (1.0 + 1e-9)), 1), max(int((build.width or d) / d * (1.0 + 1e-9)), 1)
 
 
-def flume_count(case: "Case") -> int:
+def flume_count(case: Case, build: FlumeSection) -> int:
     """Free grains of a flume; of several sizes as many as have the volume of those layers."""
-    assert isinstance(case.build, FlumeSection)
-    n_x, n_y = _side_by_side(case, case.build)
+    n_x, n_y = _side_by_side(case, build)
     each = reference_diameter(case) ** 3 / laid_mean_cube(case) if graded(case) else 1.0
-    return round(case.build.layers * n_x * n_y * each)
+    return round(build.layers * n_x * n_y * each)
 
 
-def fill_cells(case: "Case") -> tuple[int, int, int]:
+def fill_cells(case: Case, build: FillSection) -> tuple[int, int, int]:
     """Cells of the lattice of builder 'fill' along x, y and z, in its box or round its wall."""
-    build = case.build
-    assert isinstance(build, FillSection)
     if build.inside is not None:
-        return fill_inside(case).grid.shape
+        return fill_inside(case, build).grid.shape
     pitch = room(case) * (1.0 + build.gap)
     x, y, z = (
         max(int((high - low) / pitch * (1.0 + 1e-9)), 0) for low, high in zip(*fill_box(build), strict=True)
@@ -231,22 +225,19 @@ def fill_box(build: FillSection) -> tuple[Corner, Corner]:
     return build.low, build.high
 
 
-def fill_inside(case: "Case") -> CellsInside:
+def fill_inside(case: Case, build: FillSection) -> CellsInside:
     """Cells of builder 'fill' in the wall that it names; of a sieve curve, those that lie inside wholly."""
-    build = case.build
-    assert isinstance(build, FillSection)
     pitch = room(case) * (1.0 + build.gap)
-    return cells_inside(enclosure_of(case), pitch, room(case), graded(case))
+    return cells_inside(enclosure_of(case, build), pitch, room(case), graded(case))
 
 
-def fill_count(case: "Case") -> int:
+def fill_count(case: Case, build: FillSection) -> int:
     """Free grains of builder 'fill': as many as fit, or fewer if asked for."""
-    build, held = case.build, fill_most(case)
-    assert isinstance(build, FillSection)
+    held = fill_most(case, build)
     return min(held, build.number or build.most or held)
 
 
-def fill_most(case: "Case") -> int:
+def fill_most(case: Case, build: FillSection) -> int:
     """Grains that builder 'fill' can lay; of several sizes what its cells hold, halved for smaller ones.
 
     Notes
@@ -255,18 +246,16 @@ def fill_most(case: "Case") -> int:
     up to two grains from the share of a level, and the grains of a level are rounded up to a whole cell of
     the next: together less than `_ROUNDED` cells for each material.
     """
-    build = case.build
-    assert isinstance(build, FillSection)
     inside = build.inside is not None
-    cells = len(fill_inside(case).numbers) if inside else math.prod(fill_cells(case))
+    cells = len(fill_inside(case, build).numbers) if inside else math.prod(fill_cells(case, build))
     if not graded(case):
         return cells
-    laid = laid_shares(case)
+    laid = laid_shares(case.grains, case.build)
     each = sum(share * _cells_of_a_grain(case, name) for name, share in laid.items())
     return max(cells, int((cells - _ROUNDED * len(laid)) / each))
 
 
-def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.int64], int]:
+def stream_cells(case: Case) -> tuple[float, tuple[float, float], NDArray[np.int64], int]:
     """Lattice of builder 'stream': where it begins [m], its pitch along x and y [m], its columns, rows.
 
     The columns are those beside dams, numbered from where the lattice begins; each spans a pitch along x.
@@ -285,13 +274,13 @@ def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.i
     return begin, (pitch, width / n_y), np.flatnonzero(beside), n_y
 
 
-def stream_thickness(case: "Case") -> NDArray[np.float64]:
+def stream_thickness(case: Case) -> NDArray[np.float64]:
     """Thickness of the settled bed in the columns of the lattice of builder 'stream' [m]."""
     begin, (pitch, _), columns, _ = stream_cells(case)
     return bed_over(case, np.asarray(begin + (columns + 0.5) * pitch, dtype=np.float64))
 
 
-def stream_count(case: "Case") -> int:
+def stream_count(case: Case) -> int:
     """Free grains of the bed of builder 'stream': their volume over its area is thickness times `packed`."""
     build = case.build
     assert isinstance(build, StreamSection)
@@ -302,7 +291,7 @@ def stream_count(case: "Case") -> int:
     return max(round(volume / (case.grains.shape_volume * laid_mean_cube(case))), 0)
 
 
-def _cells_of_a_grain(case: "Case", name: str | None) -> float:
+def _cells_of_a_grain(case: Case, name: str | None) -> float:
     """Cells of the largest grain that a grain of a material takes in the mean [-]."""
     halved, widest, grading = (
         4.0 if case.motion.plane else 8.0,
@@ -316,7 +305,7 @@ def _cells_of_a_grain(case: "Case", name: str | None) -> float:
     return sum((a - b) / halved**k for k, (a, b) in enumerate(pairwise([*below, 0.0])))
 
 
-def bed_area(case: "Case") -> float:
+def bed_area(case: Case) -> float:
     """Area of bed under a packing, a flume or a periodic box, a slab in the plane [m2]; nan for others."""
     build, slab = case.build, slab_width(case)
     if isinstance(build, FlumeSection):
@@ -331,7 +320,7 @@ def bed_area(case: "Case") -> float:
     return math.nan
 
 
-def periodic(case: "Case") -> tuple[bool, bool]:
+def periodic(case: Case) -> tuple[bool, bool]:
     """Whether x and y are periodic."""
     build = case.build
     if isinstance(build, FlumeSection):

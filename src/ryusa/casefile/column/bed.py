@@ -1,20 +1,16 @@
 """The loose bed under a column of water: how thick it lies, where it ends, and the depth of water over it."""
 
 import math
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import FlumeSection, PackingSection
 from ryusa.casefile.builders.values import bed_area, counts
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import laid_mean_cube
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
+from ryusa.casefile.grains.values import laid_mean_cube
 
 
-def bed_thickness(case: "Case") -> float:
+def bed_thickness(case: Case) -> float:
     """Thickness of the free grains settled to the concentration `packed` [m]; nan if unknown.
 
     A base of fixed grains of random height takes up to half a layer more.
@@ -22,7 +18,7 @@ def bed_thickness(case: "Case") -> float:
     return counts(case)[0] * case.grains.shape_volume * laid_mean_cube(case) / (bed_area(case) * packed(case))
 
 
-def bed_top(case: "Case") -> float:
+def bed_top(case: Case) -> float:
     """Height of the top of the free grains settled to the concentration `packed` [m]; nan if unknown."""
     build, d = case.build, reference_diameter(case)
     if isinstance(build, FlumeSection):
@@ -33,7 +29,7 @@ def bed_top(case: "Case") -> float:
     return crest + bed_thickness(case)
 
 
-def water_over(case: "Case") -> float:
+def water_over(case: Case) -> float:
     """Depth of the water over the loose bed of a column [m]; negative where the surface lies within the bed.
 
     It is `water.depth` itself where that is measured from the top of the bed, over a fixed bed, and where the
@@ -42,7 +38,7 @@ def water_over(case: "Case") -> float:
     wet = case.water
     if wet is None or wet.depth is None:
         return math.nan
-    over_loose = wet.profile == "column" and column_keys(case).bed == "moving"
+    over_loose = wet.profile == "column" and case.column.bed == "moving"
     if wet.zero is None or not over_loose:
         return wet.depth
     top = bed_top(case)

@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_top, water_over
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
+from ryusa.casefile.column.schema import CELL, ColumnSection
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.row.values import stream, water_alone
@@ -20,20 +20,17 @@ from ryusa.errors import CaseError
 from ryusa.laws.families import Mixing
 from ryusa.model.column import AGREE, refuse
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 MOST_CELLS = 20_000
 DENSEST = math.pi / math.sqrt(18.0)  # concentration of the densest packing of equal spheres
 SPARE = 1.2  # height of the column over the depth
 
 
-def check_column(case: "Case") -> Iterator[CaseError]:
+def check_column(case: Case) -> Iterator[CaseError]:
     """Find faults of the column of water."""
     water = case.water
     if water is None or water.profile != "column" or water_alone(case):
         return
-    keys = column_keys(case)
+    keys = case.column
     if stream(case):
         yield from _laws(water)
         yield from _closures(keys)
@@ -52,7 +49,7 @@ def check_column(case: "Case") -> Iterator[CaseError]:
         yield from shallow or _contradictions(case, water, keys, over if over > 0.0 else water.depth)
 
 
-def _place(case: "Case", water: WaterSection) -> Iterator[CaseError]:
+def _place(case: Case, water: WaterSection) -> Iterator[CaseError]:
     """A column is averaged over x and y, so the bed under it must be periodic."""
     along, across = periodic(case)
     kind = case.build.kind
@@ -95,7 +92,7 @@ def _closures(keys: ColumnSection) -> Iterator[CaseError]:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
 
 
-def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
+def _boundaries(case: Case, water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     if "wall" in Mixing.of(keys.mixing).marks and keys.bed == "moving":
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
@@ -117,7 +114,7 @@ def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Itera
         )
 
 
-def _side_walls(case: "Case", width: float) -> Iterator[CaseError]:
+def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
     """Side walls have room for a grain, and stand no closer than those of the flume."""
     largest, build = sizes(case)[2], case.build
     if width < largest:
@@ -130,7 +127,7 @@ def _side_walls(case: "Case", width: float) -> Iterator[CaseError]:
         yield CaseError("water.column.side_walls", width, text)
 
 
-def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
+def _driver(case: Case, water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     """The driver of the water is given once, and nothing else drives it."""
     for key, drive in (("pressure_gradient", "pressure gradient"), ("discharge", "discharge")):
         value = getattr(keys, key)
@@ -138,7 +135,7 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
             yield CaseError(f"water.column.{key}", None, f"missing; drive '{drive}' needs it")
     key = "u_star" if water.u_star is not None else "tau_star"
     stress = getattr(water, key)
-    level = case.motion.gravity * slope_at_last(case) == 0.0
+    level = case.motion.gravity * slope_at_last(case.motion, case.timeline) == 0.0
     if keys.drive == "discharge" and keys.discharge is not None and not keys.discharge > 0.0:
         yield CaseError("water.column.discharge", keys.discharge, "must be above 0 m2/s, along +x")
     if keys.drive == "pressure gradient" and keys.pressure_gradient == 0.0 and level:
@@ -157,10 +154,10 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
         )
 
 
-def _over_bed(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
+def _over_bed(case: Case, water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     """The surface of water that is driven lies above the loose bed."""
     over, depth = water_over(case), water.depth or 0.0
-    driven = keys.drive != "slope" or case.motion.gravity * slope_at_last(case) != 0.0
+    driven = keys.drive != "slope" or case.motion.gravity * slope_at_last(case.motion, case.timeline) != 0.0
     if over > 0.0 or not driven or case.grains.density <= water.density:
         return
     top = bed_top(case)
@@ -174,7 +171,7 @@ def _over_bed(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterato
 
 
 def _contradictions(
-    case: "Case", water: WaterSection, keys: ColumnSection, depth: float
+    case: Case, water: WaterSection, keys: ColumnSection, depth: float
 ) -> Iterator[CaseError]:
     """Cells that do not fit the depth, and stress, slope and depth that contradict each other."""
     d = reference_diameter(case)
@@ -201,7 +198,10 @@ def _contradictions(
     known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
     falls = keys.drive == "slope" and case.motion.gravity > 0.0
     estimated = water.depth is not None and depth != water.depth
-    asked, along = u_star_given(case), case.motion.gravity * math.sin(slope_at_last(case))
+    asked, along = (
+        u_star_given(case),
+        case.motion.gravity * math.sin(slope_at_last(case.motion, case.timeline)),
+    )
     if estimated and falls and along > 0.0 and asked > 0.0:  # the top of a loose bed is known to half a grain
         fits = asked**2 / along
         if water.depth is not None and abs(fits - water.depth) <= AGREE * water.depth:
@@ -213,7 +213,7 @@ def _contradictions(
         dz=cell,
         z_low=(keys.bottom or 0.0) if known else 0.0,
         z_bed=(water.zero or 0.0) if known else 0.0,
-        slope=slope_at_last(case) if falls else None,
+        slope=slope_at_last(case.motion, case.timeline) if falls else None,
         tau_star=water.tau_star if case.grains.density > water.density else None,
         u_star=water.u_star,
         d=d,

@@ -1,21 +1,16 @@
 """Concentration of a loose bed at rest."""
 
-from typing import TYPE_CHECKING
-
-from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.case import Case
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.motion import slab_width
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
+from ryusa.casefile.grains.values import slab_width
 
 # concentration of a bed at rest [-]; in a plane scene, of spheres in a slab one diameter wide
 PACKED, PACKED_PLANE = 0.61, 0.55
 
 
-def packed(case: "Case") -> float:
+def packed(case: Case) -> float:
     """Concentration of the bed at rest [-], at which the mixing length is zero."""
-    keys = column_keys(case)
+    keys = case.column
     if keys.packed is not None:
         return keys.packed
     if not case.motion.plane:

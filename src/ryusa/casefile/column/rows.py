@@ -1,14 +1,15 @@
 """Rows of `ryusa check` about a column of water: its driver, its bed, and how its grains will move."""
 
 import math
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness, bed_top, water_over
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
+from ryusa.casefile.column.schema import CELL, ColumnSection
 from ryusa.casefile.column.spin_up import spin_up_rows
 from ryusa.casefile.contact.values import friction_at_last
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
@@ -17,20 +18,16 @@ from ryusa.laws import drag, transport
 from ryusa.laws.eddies import eddy_life
 from ryusa.model.column import AGREE
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
 THROUGHOUT, NEAR = 0.8, 2.5  # Rouse numbers below which grains fill the depth, and leave the bed for long
 SHEET, THICK = 0.5, 1.0  # tau_star from which sheet flow begins, and is fully developed
 C_S, ALPHA = 0.3, 0.25  # Egashira's moving layer: concentration, collisional over static pressure
 
 
-def origin_of_u_star(case: "Case") -> str:
+def origin_of_u_star(case: Case) -> str:
     """Formula or key that the friction velocity of a case comes from."""
     wet = case.water
     assert wet is not None
-    keys = column_keys(case)
+    keys = case.column
     partly = water_over(case) != wet.depth
     if wet.profile == "column" and keys.drive == "tau_star" and partly:
         key = "tau_star" if wet.tau_star is not None else "u_star"
@@ -93,14 +90,14 @@ def regime(
     return words, f"{why}; {begins}"
 
 
-def column_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def column_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Rows about the column of a case; none where the water does not respond to the grains."""
     wet = case.water
     if wet is None or wet.profile != "column" or wet.depth is None:
         return []
     if water_alone(case) or stream(case):
         return []
-    keys = column_keys(case)
+    keys = case.column
     cell = keys.cell or CELL * derived.d
     still = not derived.u_star > 0.0
     rows = [number("water", "depth", wet.depth, "cm", "water.depth, above water.zero")]
@@ -124,7 +121,7 @@ def column_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def _bed(case: "Case", keys: ColumnSection) -> list[ExplainRow]:
+def _bed(case: Case, keys: ColumnSection) -> list[ExplainRow]:
     """The loose bed, and the depth of water over it."""
     top = bed_top(case)
     if keys.bed != "moving" or math.isnan(top):
@@ -144,7 +141,7 @@ def _bed(case: "Case", keys: ColumnSection) -> list[ExplainRow]:
     ]
 
 
-def _fluctuations(case: "Case", derived: "Derived", keys: ColumnSection) -> list[ExplainRow]:
+def _fluctuations(case: Case, derived: Derived, keys: ColumnSection) -> list[ExplainRow]:
     """Turbulent velocity fluctuations, where the case has them."""
     if keys.fluctuations == "none":
         return []
@@ -156,11 +153,11 @@ def _fluctuations(case: "Case", derived: "Derived", keys: ColumnSection) -> list
     return [number("water", "fluctuations", derived.u_star, "m/s", origin)]
 
 
-def _flow(case: "Case", derived: "Derived", keys: ColumnSection) -> list[ExplainRow]:
+def _flow(case: Case, derived: Derived, keys: ColumnSection) -> list[ExplainRow]:
     """Numbers of flowing water, and the regime of transport to expect."""
     wet = case.water
     assert wet is not None
-    tilted = slope_at_last(case) != derived.slope
+    tilted = slope_at_last(case.motion, case.timeline) != derived.slope
     changed: Flag = "note" if tilted else ""
     re = drag.reynolds(derived.u_star, derived.d, wet.viscosity)
     origin = "u_star d/nu" + ("; u_star after the last change of slope in the timeline" if tilted else "")
@@ -173,7 +170,9 @@ def _flow(case: "Case", derived: "Derived", keys: ColumnSection) -> list[Explain
     rows.append(number("water", "Rouse number", rouse, "-", "settling velocity over kappa u_star"))
     excess = case.grains.density / wet.density - 1.0
     d_star = transport.d_star(excess, derived.g, derived.d, wet.viscosity)
-    repose = math.atan(friction_at_last(case))
-    layer = transport.bedload_layer(derived.tau_star, slope_at_last(case), repose, C_S, ALPHA)
+    repose = math.atan(friction_at_last(case.contact, case.timeline))
+    layer = transport.bedload_layer(
+        derived.tau_star, slope_at_last(case.motion, case.timeline), repose, C_S, ALPHA
+    )
     motion, why = regime(derived.tau_star, d_star, rouse, layer, water_over(case) / derived.d)
     return [*rows, word("water", "expected motion", motion, why)]

@@ -1,6 +1,6 @@
 """Keys of [water.column]."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import Field
 
@@ -15,9 +15,6 @@ from ryusa.casefile.quantities import (
 )
 from ryusa.casefile.section import Section
 from ryusa.laws import families
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 # keys of [water] that have an effect only with profile "column"
 ONLY_IN_A_COLUMN = (
@@ -86,8 +83,3 @@ class ColumnSection(Section):
     def mixing(self) -> str:
         """Mixing length given, or the default of the bed."""
         return self.mixing_length or ("Li-Sawamoto" if self.bed == "moving" else "parabolic")
-
-
-def column_keys(case: "Case") -> ColumnSection:
-    """Keys of [water.column], all defaults where the case leaves the table out."""
-    return (case.water and case.water.column) or ColumnSection()

@@ -1,25 +1,22 @@
 """How long the water of a column needs to come up to speed, beside the settling time of the case."""
 
 import math
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.column.schema import ColumnSection
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.record.schema import ChangeSection
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.laws.spin_up import spin_up_laminar, spin_up_turbulent
 from ryusa.laws.turbulence import speed_mean_rough
 from ryusa.laws.water import log_law_smooth
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-    from ryusa.casefile.record import ChangeSection
-
 REACHED = 0.95  # share of the steady speed at which the water counts as up to speed
 FIRST_MODE = 96.0 / math.pi**4  # share of the mean speed that the slowest mode of viscous water lacks at rest
 
 
-def steady_speed(case: "Case", keys: ColumnSection, u_star: float, k_rough: float) -> float:
+def steady_speed(case: Case, keys: ColumnSection, u_star: float, k_rough: float) -> float:
     """Mean speed of turbulent water over its bed in steady flow, without moving grains [m/s]; nan if unknown.
 
     Over a smooth bed the speed at depth/e, which is the mean of a logarithmic profile; else the mean of
@@ -32,7 +29,7 @@ def steady_speed(case: "Case", keys: ColumnSection, u_star: float, k_rough: floa
     return speed_mean_rough(depth, u_star, k_rough) or math.nan
 
 
-def spin_up_rows(case: "Case", derived: "Derived", keys: ColumnSection) -> list[ExplainRow]:
+def spin_up_rows(case: Case, derived: Derived, keys: ColumnSection) -> list[ExplainRow]:
     """Time that the water needs from rest; where it starts in steady flow, the time in which it adapts.
 
     None for drive = "discharge", which holds the discharge from the first step on.

@@ -1,20 +1,16 @@
 """Friction velocity of a column of water in steady flow."""
 
 import math
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.water.values import u_star_given
 from ryusa.laws import water
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def column_u_star(case: "Case", k_rough: float) -> float:
+def column_u_star(case: Case, k_rough: float) -> float:
     """Friction velocity of a column at the top of its bed in steady flow [m/s]; nan if nothing drives it.
 
     A discharge is taken as that of Eq. (9), whose mean over the depth is the speed at depth/e. The driver
@@ -23,13 +19,13 @@ def column_u_star(case: "Case", k_rough: float) -> float:
     """
     wet = case.water
     assert wet is not None
-    keys, depth = column_keys(case), water_over(case)
+    keys, depth = case.column, water_over(case)
     if not depth > 0.0:
         return math.nan
     if keys.discharge is not None:
         unit = water.log_law_rough(depth / math.e, 1.0, k_rough)
         return abs(keys.discharge) / depth / unit if unit > 0.0 else math.nan
-    along = case.motion.gravity * math.sin(slope_at_last(case))
+    along = case.motion.gravity * math.sin(slope_at_last(case.motion, case.timeline))
     pull = along + (keys.pressure_gradient or 0.0) / wet.density
     if keys.drive == "tau_star" and wet.depth is not None:
         if depth == wet.depth:

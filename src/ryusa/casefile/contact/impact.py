@@ -2,27 +2,25 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import fill_cells
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.fastest_impacts import overlaps_expected
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import adhesion, is_hertz, largest_overlap, overlap_under
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import water_speed
 from ryusa.errors import CaseError
 from ryusa.laws.families import Adhesion
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
 STABLE = (1.0e-3, 1.0e-2)  # overlap over d at which motion is stable and free: the paper, fig11
 SKIMMING = 0.3  # u t/d beyond which grains pass each other before the collision time of Eq. (8) is over
 
 
-def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def impact_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Overlap and travel to expect within one contact."""
     speed, origin = expected_speed(case)
     rest, at_rest = _at_rest(case, derived)
@@ -43,36 +41,37 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return rows
 
 
-def check_overlap(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
+def check_overlap(case: Case, derived: Derived, data: dict[str, Any]) -> Iterator[CaseError]:
     """Find contacts so soft that grains pass through one another, but for single drops, which study that."""
     if isinstance(case.build, DropSection):
         return
     impact = largest_overlap(case, expected_speed(case)[0]) / derived.d
     overlap = max(impact, _at_rest(case, derived)[0])
     if overlap > 1.0:
-        key = "youngs_modulus" if is_hertz(case) else "stiffness"
+        key = "youngs_modulus" if is_hertz(case.contact) else "stiffness"
         yield CaseError(
             f"contact.{key}", data["contact"].get(key), f"is so small that grains would overlap by "
             f"{overlap:.3g} diameters and pass through one another; motion is stable up to {STABLE[1]:g}",
         )  # fmt: skip
 
 
-def _at_rest(case: "Case", derived: "Derived") -> tuple[float, str]:
+def _at_rest(case: Case, derived: Derived) -> tuple[float, str]:
     """Overlap over d of the lowest layer at rest [-], and where it comes from; 0 where there is none."""
-    if not isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
+    build = case.build
+    if not isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):
         return 0.0, ""
-    layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
+    layers = fill_cells(case, build)[2] if isinstance(build, FillSection) else build.layers
     weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
-    origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case) else 'over k_n d'}"
-    origin += "" if adhesion(case) is Adhesion.NONE else ", with adhesion"
+    origin = f"weight of {layers:g} layers {'by Hertz' if is_hertz(case.contact) else 'over k_n d'}"
+    origin += "" if adhesion(case.contact) is Adhesion.NONE else ", with adhesion"
     return overlap_under(case, weight) / derived.d, origin
 
 
-def _overlap(case: "Case", derived: "Derived", rest: float) -> ExplainRow:
+def _overlap(case: Case, derived: Derived, rest: float) -> ExplainRow:
     least, most, origin = overlaps_expected(case, derived)
     if rest > most:
         least, most, origin = rest, rest, "more at rest than in impacts"
-    stiff, (low, high) = "Young's modulus" if is_hertz(case) else "k_n", STABLE
+    stiff, (low, high) = "Young's modulus" if is_hertz(case.contact) else "k_n", STABLE
     verdict, flag = f"in the stable range {low:g} to {high:g}", ""
     if least > high:
         verdict, flag = f"above the stable range {low:g} to {high:g}; take a larger {stiff}", "warning"
@@ -87,7 +86,7 @@ def _overlap(case: "Case", derived: "Derived", rest: float) -> ExplainRow:
     return ExplainRow("impact", "largest overlap/d", most, "", shown, f"{origin}: {verdict}", flag)
 
 
-def _speed_along(case: "Case", derived: "Derived") -> tuple[float, str]:
+def _speed_along(case: Case, derived: Derived) -> tuple[float, str]:
     """Speed at which grains pass the bed [m/s], and where it comes from."""
     if isinstance(case.build, DropSection):
         return abs(case.build.speed_along), "build.speed_along"

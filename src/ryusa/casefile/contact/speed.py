@@ -1,19 +1,16 @@
 """Impact speed to be expected in a case: stable range, contact time of elastic spheres, time step."""
 
 import math
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import room, sizes
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.schema import OverlapStiffnessSection
-from ryusa.casefile.grains import mass
+from ryusa.casefile.grains.values import mass
 from ryusa.casefile.water.values import terminal_velocity
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def expected_speed(case: "Case") -> tuple[float, str]:
+def expected_speed(case: Case) -> tuple[float, str]:
     """Impact speed for judging the overlap [m/s], and where it comes from."""
     rule, build, g = case.contact.stiffness, case.build, case.motion.gravity
     if case.contact.expected_speed is not None:

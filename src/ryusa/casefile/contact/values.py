@@ -1,14 +1,16 @@
 """What follows from [contact]: stiffness, friction, damping ratios, and the values of one pair of grains."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 from ryusa.casefile.builders.values import sizes
-from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.contact.schema import ContactSection, OverlapStiffnessSection, TimeStiffnessSection
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.grains import mass
+from ryusa.casefile.facts import PairValues
+from ryusa.casefile.grains.values import mass
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.shape import has_clumps
 from ryusa.laws import collision, hertz
 from ryusa.laws import contact as contact_law
@@ -33,95 +35,74 @@ from ryusa.model.contact_law import (
     step_limits_of,
 )
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 numbers(__name__, Parting.NO_TENSION, Parting.TENSION)
 SHEAR_RATIO = 2.0 / 7.0  # k_s over k_n when the case gives neither
 
 
-@dataclass(frozen=True)
-class PairValues:
-    """Masses, damping and durations of one kind of contact: a grain on a fixed one, or two free grains."""
-
-    m: float  # effective mass, with added mass [kg]
-    m_t: float  # effective mass in the tangential direction [kg]
-    zeta_n: float  # damping ratio [-]
-    zeta_s: float
-    eta_n: float  # dashpots [N s/m]
-    eta_s: float
-    e: float  # normal restitution reached [-]
-    e_s: float  # tangential restitution of the free oscillator [-]
-    t_undamped: float  # Eq. (8) with this mass [s]
-    t_col: float  # time the normal force lasts [s]
-    t_shear: float  # half period of the tangential oscillator [s]; inf without spring
-
-
-def is_hertz(case: "Case") -> bool:
+def is_hertz(contact: ContactSection) -> bool:
     """Whether contacts are those of elastic spheres."""
-    return ContactForce.of(case.contact.law) is ContactForce.HERTZ_MINDLIN
+    return ContactForce.of(contact.law) is ContactForce.HERTZ_MINDLIN
 
 
-def timing(case: "Case") -> ContactTiming:
+def timing(case: Case) -> ContactTiming:
     """Begin and end of contacts in time."""
     if case.contact.timing is not None:
         return ContactTiming.of(case.contact.timing)
-    at_steps = is_hertz(case) or has_clumps(case) or adhesion(case) is not Adhesion.NONE
+    sticky = adhesion(case.contact) is not Adhesion.NONE
+    at_steps = is_hertz(case.contact) or has_clumps(case.grains) or sticky
     return ContactTiming.AT_STEPS if at_steps else ContactTiming.EXACT
 
 
-def adhesion(case: "Case") -> Adhesion:
+def adhesion(contact: ContactSection) -> Adhesion:
     """Attraction of grains in touch."""
-    return Adhesion.of(case.contact.adhesion)
+    return Adhesion.of(contact.adhesion)
 
 
-def adhesion_amount(case: "Case") -> float:
+def adhesion_amount(contact: ContactSection) -> float:
     """Pull-off force [N], work of adhesion [J/m2] or energy density [Pa]; 0 without adhesion."""
-    (value,) = [getattr(case.contact, key) for key in adhesion(case).takes] or (None,)
+    (value,) = [getattr(contact, key) for key in adhesion(contact).takes] or (None,)
     return value or 0.0
 
 
-def parting(case: "Case") -> str:
+def parting(contact: ContactSection) -> str:
     """Word of the case for the end of the normal force."""
-    return case.contact.damping_law if is_hertz(case) else case.contact.parting
+    return contact.damping_law if is_hertz(contact) else contact.parting
 
 
-def may_pull(case: "Case") -> bool:
+def may_pull(contact: ContactSection) -> bool:
     """Whether the normal dashpot may pull before the overlap ends."""
-    if is_hertz(case):
-        return DampingLaw.of(case.contact.damping_law) is DampingLaw.TSUJI
-    return Parting.of(case.contact.parting) is Parting.TENSION
+    if is_hertz(contact):
+        return DampingLaw.of(contact.damping_law) is DampingLaw.TSUJI
+    return Parting.of(contact.parting) is Parting.TENSION
 
 
-def friction(case: "Case") -> float:
+def friction(contact: ContactSection) -> float:
     """Friction coefficient mu = tan(phi) [-]."""
-    contact = case.contact
     if contact.friction_angle is not None:
         return math.tan(contact.friction_angle)
     return contact.friction if contact.friction is not None else math.nan
 
 
-def friction_at_last(case: "Case") -> float:
+def friction_at_last(contact: ContactSection, timeline: Timeline) -> float:
     """Friction coefficient after the last change of the timeline [-]."""
-    for change in reversed(case.timeline):
+    for change in reversed(timeline):
         if change.friction_angle is not None:
             return math.tan(change.friction_angle)
         if change.friction is not None:
             return change.friction
-    return friction(case)
+    return friction(contact)
 
 
-def restitution(case: "Case") -> tuple[float, float, float, float]:
+def restitution(contact: ContactSection) -> tuple[float, float, float, float]:
     """Normal and tangential restitution given, and the damping ratios that reach them; nan with constants.
 
     The tangential damping ratio is that of a two-sided oscillator whatever contact.parting is.
     """
-    contact = case.contact
     if contact.restitution is None:
         return math.nan, math.nan, math.nan, math.nan
     e_n = contact.restitution
     e_s = contact.restitution_shear if contact.restitution_shear is not None else e_n
-    tension = may_pull(case)
+    tension = may_pull(contact)
     return (
         e_n,
         e_s,
@@ -130,16 +111,16 @@ def restitution(case: "Case") -> tuple[float, float, float, float]:
     )
 
 
-def stiffness(case: "Case") -> tuple[float, float]:
+def stiffness(case: Case) -> tuple[float, float]:
     """Give k_n and k_s [N/m], as written or as they follow for a mean grain on a fixed one."""
     rule, contact = case.contact.stiffness, case.contact
-    if is_hertz(case):
+    if is_hertz(case.contact):
         law = hertz_law(case)
         return law.k_n, law.k_s
     assert rule is not None
     m, m_added, _, _ = mass(case, sizes(case)[0])
     if isinstance(rule, OverlapStiffnessSection):
-        zeta = restitution(case)[2]
+        zeta = restitution(case.contact)[2]
         zeta = 0.0 if math.isnan(zeta) else zeta
         k_n = collision.stiffness_for_overlap(rule.overlap * sizes(case)[0], rule.speed, m + m_added, zeta)
     elif isinstance(rule, TimeStiffnessSection):
@@ -151,11 +132,11 @@ def stiffness(case: "Case") -> tuple[float, float]:
     return k_n, k_n * (SHEAR_RATIO if contact.shear_ratio is None else contact.shear_ratio)
 
 
-def hertz_law(case: "Case") -> ContactLaw:
+def hertz_law(case: Case) -> ContactLaw:
     """Contact law of a case with elastic spheres; its k_n is that of a mean grain on a fixed one."""
     contact, d = case.contact, sizes(case)[0]
     m, m_added, _, _ = mass(case, d)
-    e_n, e_s, _, _ = restitution(case)
+    e_n, e_s, _, _ = restitution(case.contact)
     slip = Slip.of(contact.slip)
     return elastic_spheres(
         m + m_added,
@@ -163,7 +144,7 @@ def hertz_law(case: "Case") -> ContactLaw:
         youngs_modulus=contact.youngs_modulus or math.nan,
         poisson_ratio=contact.poisson_ratio,
         speed=expected_speed(case)[0],
-        friction=friction(case),
+        friction=friction(case.contact),
         restitution=e_n,
         restitution_shear=e_s,
         damping_law=DampingLaw.of(contact.damping_law),
@@ -171,30 +152,30 @@ def hertz_law(case: "Case") -> ContactLaw:
         slip=slip,
         cap=None if contact.cap is None else Cap.of(contact.cap),
         cohesion=contact.cohesion,
-        adhesion=adhesion(case),
-        adhesion_amount=adhesion_amount(case),
+        adhesion=adhesion(case.contact),
+        adhesion_amount=adhesion_amount(case.contact),
     )
 
 
-def law_of(case: "Case") -> ContactLaw:
+def law_of(case: Case) -> ContactLaw:
     """Contact law of a case, as far as estimates need it: springs, damping and adhesion."""
-    if is_hertz(case):
+    if is_hertz(case.contact):
         return hertz_law(case)
-    (k_n, k_s), (e_n, e_s, zeta_n, zeta_s) = stiffness(case), restitution(case)
+    (k_n, k_s), (e_n, e_s, zeta_n, zeta_s) = stiffness(case), restitution(case.contact)
     one = pair_values(case, sizes(case)[0], False)
     return ContactLaw(
         k_n=k_n,
         k_s=k_s,
-        mu=friction(case),
+        mu=friction(case.contact),
         cohesion=case.contact.cohesion,
         e_n=e_n,
         e_s=e_s,
         zeta_n=one.zeta_n if math.isnan(zeta_n) else zeta_n,
         zeta_s=one.zeta_s if math.isnan(zeta_s) else zeta_s,
-        tension=may_pull(case),
+        tension=may_pull(case.contact),
         timing=timing(case),
-        adhesion=adhesion(case),
-        adhesion_amount=adhesion_amount(case),
+        adhesion=adhesion(case.contact),
+        adhesion_amount=adhesion_amount(case.contact),
     )
 
 
@@ -203,46 +184,46 @@ def reduced_radius(d: float, free: bool) -> float:
     return 0.25 * d if free else 0.5 * d
 
 
-def shortest_contact(case: "Case", d: float, free: bool) -> float:
+def shortest_contact(case: Case, d: float, free: bool) -> float:
     """Shortest contact of the pair of `pair_values` [s]; of elastic spheres at the expected speed."""
     one = pair_values(case, d, free)
-    if is_hertz(case):
+    if is_hertz(case.contact):
         return shortest_contact_of(hertz_law(case), one.m, reduced_radius(d, free))
-    return collision.shortest_contact(one.m, stiffness(case)[0], one.zeta_n, may_pull(case))
+    return collision.shortest_contact(one.m, stiffness(case)[0], one.zeta_n, may_pull(case.contact))
 
 
-def largest_overlap(case: "Case", speed: float) -> float:
+def largest_overlap(case: Case, speed: float) -> float:
     """Largest overlap of a mean grain that hits a fixed one [m], as it were without adhesion."""
     d = sizes(case)[0]
     one = pair_values(case, d, False)
-    if is_hertz(case):
+    if is_hertz(case.contact):
         law = replace(hertz_law(case), adhesion=Adhesion.NONE)
         return largest_overlap_of(law, one.m, 0.25 * d, speed)
     return collision.overlap_max(speed, one.m, stiffness(case)[0], one.zeta_n)
 
 
-def overlap_under(case: "Case", load: float) -> float:
+def overlap_under(case: Case, load: float) -> float:
     """Overlap of a mean grain on a fixed one under a load [N] at rest, with adhesion [m]."""
-    if adhesion(case) is not Adhesion.NONE:
+    if adhesion(case.contact) is not Adhesion.NONE:
         return rest_overlap_of(law_of(case), 0.25 * sizes(case)[0], load)
-    if is_hertz(case):
+    if is_hertz(case.contact):
         return hertz.hertz_overlap(load, hertz_stiffness_of(hertz_law(case), 0.25 * sizes(case)[0]))
     return load / stiffness(case)[0]
 
 
-def step_limit(case: "Case", d: float, free: bool) -> tuple[float, float]:
+def step_limit(case: Case, d: float, free: bool) -> tuple[float, float]:
     """Largest stable step [s] of the normal and of the tangential motion of the pair of `pair_values`."""
-    if is_hertz(case):
-        one = pair_values(case, d, free, may_rotate(case))
+    if is_hertz(case.contact):
+        one = pair_values(case, d, free, may_rotate(case.motion, case.timeline))
         return step_limits_of(hertz_law(case), one.m, one.m_t, reduced_radius(d, free))
-    (k_n, k_s), one = stiffness(case), pair_values(case, d, free, may_rotate(case))
+    (k_n, k_s), one = stiffness(case), pair_values(case, d, free, may_rotate(case.motion, case.timeline))
     normal = collision.step_limit(one.zeta_n, collision.omega_natural(k_n, one.m))
     if k_s > 0.0:
         return normal, collision.step_limit(one.zeta_s, collision.omega_natural(k_s, one.m_t))
     return normal, 2.0 * one.m_t / one.eta_s if one.eta_s > 0.0 else math.inf
 
 
-def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None) -> PairValues:
+def pair_values(case: Case, d: float, free: bool, rotates: bool | None = None) -> PairValues:
     """Values of a grain of diameter d [m] on a fixed one, or of two such grains when `free`.
 
     `rotates` stands for motion.rotation, which applies when it is not given.
@@ -256,8 +237,8 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
     m_t = collision.effective_mass_tangential(
         heavy, r, inertia, heavy if free else still, r, inertia if free else still, rotates
     )
-    _, _, zeta_n, zeta_s = restitution(case)
-    if is_hertz(case):
+    _, _, zeta_n, zeta_s = restitution(case.contact)
+    if is_hertz(case.contact):
         return _pair_values_hertz(case, 0.25 * d, m_eff, m_t)
     if math.isnan(zeta_n):
         eta_n, eta_s = contact.damping or 0.0, contact.shear_damping or 0.0
@@ -266,7 +247,7 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
     else:
         eta_n, eta_s = contact_law.damping(zeta_n, k_n, m_eff), contact_law.damping(zeta_s, k_s, m_t)
     omega = collision.omega_natural(k_n, m_eff)
-    tension = may_pull(case)
+    tension = may_pull(case.contact)
     return PairValues(
         m=m_eff,
         m_t=m_t,
@@ -282,7 +263,7 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
     )
 
 
-def _pair_values_hertz(case: "Case", r: float, m: float, m_t: float) -> PairValues:
+def _pair_values_hertz(case: Case, r: float, m: float, m_t: float) -> PairValues:
     """Values of two elastic spheres of a reduced radius r [m]: all in an impact at the expected speed.
 
     Dashpots and the tangential oscillation are those at the largest overlap.

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
 from ryusa.casefile.builders.values import periodic, size_range, sizes
+from ryusa.casefile.case import Case
 from ryusa.casefile.course import faults_of_course
 from ryusa.casefile.feeds.schema import ExitSection, FeedSection
 from ryusa.casefile.feeds.values import (
@@ -22,22 +22,19 @@ from ryusa.casefile.feeds.values import (
     share_filled,
     unit_of,
 )
-from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.motion import MotionSection
 from ryusa.casefile.section import given
 from ryusa.casefile.shape import extent
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 Corners = tuple[Sequence[float], Sequence[float]]
 
 
-def check_traffic(case: "Case") -> Iterator[CaseError]:
+def check_traffic(case: Case) -> Iterator[CaseError]:
     """Find feeds and exits that are incomplete, contradict others, or cannot do what they are asked."""
     if not case.feeds and not case.exits:
-        if isinstance(case.build, EmptySection) and row_keys(case) is None:
+        if isinstance(case.build, EmptySection) and case.row is None:
             yield CaseError("build.kind", "empty", "gives no grain; give [[feeds]]")
         return
     if isinstance(case.build, EmptySection) and not any(feed.brings for feed in case.feeds):
@@ -55,7 +52,7 @@ def check_traffic(case: "Case") -> Iterator[CaseError]:
             yield from _reach(case, f"exits.{k}", one)
 
 
-def _case(case: "Case") -> Iterator[CaseError]:
+def _case(case: Case) -> Iterator[CaseError]:
     """Find what does not go together with grains that enter and leave."""
     if isinstance(case.build, DropSection | SaltationSection):
         key = "feeds" if case.feeds else "exits"
@@ -66,7 +63,7 @@ def _case(case: "Case") -> Iterator[CaseError]:
         yield CaseError("stop.precision", None, "cannot end a run with feeds or exits; give stop.time")
 
 
-def _names(case: "Case") -> Iterator[CaseError]:
+def _names(case: Case) -> Iterator[CaseError]:
     """Find names used twice, and exits that lead to no feed."""
     taken = [one.name for one in (*case.planes, *case.walls)] + ["grains", "bed"]
     names = [feed.name for feed in case.feeds]
@@ -81,7 +78,7 @@ def _names(case: "Case") -> Iterator[CaseError]:
             yield CaseError(f"exits.{k}.to", one.to, allowed, nearest_word(one.to, names))
 
 
-def _walls(case: "Case") -> Iterator[CaseError]:
+def _walls(case: Case) -> Iterator[CaseError]:
     """Find feeds and exits that move with a wall that is not there, or is removed."""
     names, removed = [wall.name for wall in case.walls], [entry.remove for entry in case.timeline]
     for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
@@ -100,7 +97,7 @@ def _walls(case: "Case") -> Iterator[CaseError]:
                 )
 
 
-def _shapes(case: "Case") -> Iterator[CaseError]:
+def _shapes(case: Case) -> Iterator[CaseError]:
     """Find regions with missing keys, without a direction or a volume, or beside a plane scene."""
     for k, feed in enumerate(case.feeds):
         key = f"feeds.{k}"
@@ -110,8 +107,8 @@ def _shapes(case: "Case") -> Iterator[CaseError]:
             continue
         pairs = (("low", "high"), box) if box != (None, None) else (("centre", "radius"), disc)
         yield from _missing(key, *pairs)
-        yield from _direction(case, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
-        yield from _box(case, key, feed.low, feed.high, _largest(case, feed))
+        yield from _direction(case.motion, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
+        yield from _box(case.motion, key, feed.low, feed.high, _largest(case, feed))
         if case.motion.plane:
             for name, point in (("centre", feed.centre), ("velocity", feed.velocity)):
                 if point is not None and point[1] != 0.0:
@@ -125,14 +122,14 @@ def _shapes(case: "Case") -> Iterator[CaseError]:
         pairs = (("low", "high"), box) if box != (None, None) else (("point", "normal"), plane)
         yield from _missing(key, *pairs)
         if one.normal is not None:
-            yield from _direction(case, f"{key}.normal", one.normal, True)
+            yield from _direction(case.motion, f"{key}.normal", one.normal, True)
             for axis, is_periodic in zip((0, 1), periodic(case), strict=True):
                 if is_periodic and one.normal[axis] != 0.0:
                     name = "xy"[axis]
                     yield CaseError(
                         f"{key}.normal", list(one.normal), f"must have {name} = 0, because {name} is periodic"
                     )
-        yield from _box(case, key, one.low, one.high, _largest(case))
+        yield from _box(case.motion, key, one.low, one.high, _largest(case))
 
 
 def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) -> Iterator[CaseError]:
@@ -142,31 +139,31 @@ def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) ->
             yield CaseError(f"{key}.{name}", None, f"missing; {other} needs it")
 
 
-def _direction(case: "Case", key: str, normal: Sequence[float], given: bool) -> Iterator[CaseError]:
+def _direction(motion: MotionSection, key: str, normal: Sequence[float], given: bool) -> Iterator[CaseError]:
     if given and not any(normal):
         yield CaseError(key, list(normal), "must not be zero")
-    elif given and case.motion.plane and normal[1] != 0.0:
+    elif given and motion.plane and normal[1] != 0.0:
         yield CaseError(key, list(normal), "must have y = 0 in a plane scene")
 
 
-def _largest(case: "Case", feed: FeedSection | None = None) -> float:
+def _largest(case: Case, feed: FeedSection | None = None) -> float:
     """Diameter of the sphere that holds the largest grain, or that of a feed, however it is turned [m]."""
-    own = feed is not None and not _led(case, feed)
+    own = feed is not None and not _led(case.exits, feed)
     return (size_range(case, feed.material)[1] if own and feed else sizes(case)[2]) * extent(case)
 
 
-def _led(case: "Case", feed: FeedSection) -> bool:
+def _led(exits: tuple[ExitSection, ...], feed: FeedSection) -> bool:
     """Whether an exit leads to a feed, which may bring it grains of any size."""
-    return any(one.to == feed.name for one in case.exits)
+    return any(one.to == feed.name for one in exits)
 
 
 def _box(
-    case: "Case", key: str, low: Sequence[float] | None, high: Sequence[float] | None, largest: float
+    motion: MotionSection, key: str, low: Sequence[float] | None, high: Sequence[float] | None, largest: float
 ) -> Iterator[CaseError]:
     """Find boxes without a volume, or thinner than the largest grain."""
     if low is None or high is None:
         return
-    plane = case.motion.plane
+    plane = motion.plane
     if plane and (low[1], high[1]) != (0.0, 0.0):
         yield CaseError(f"{key}.low", list(low), "must have y = 0 in a plane scene, as high")
     axes = (0, 2) if plane else (0, 1, 2)
@@ -178,7 +175,7 @@ def _box(
         )
 
 
-def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+def _feed(case: Case, key: str, feed: FeedSection) -> Iterator[CaseError]:
     """Find feeds without grains, with too small an opening, or a rate that cannot fit."""
     largest = _largest(case, feed)
     if feed.radius is not None and 2.0 * feed.radius < largest:
@@ -186,7 +183,7 @@ def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
         )
         return
-    if not feed.brings and not _led(case, feed):
+    if not feed.brings and not _led(case.exits, feed):
         yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
     if feed.sedigraph is not None:
         faults = [*_sedigraph(case, key, feed)]
@@ -209,7 +206,7 @@ def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
             yield CaseError(key, None, f"lies behind the plane '{plane.name}': no grain finds a place there")
 
 
-def _sedigraph(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+def _sedigraph(case: Case, key: str, feed: FeedSection) -> Iterator[CaseError]:
     """Find a sedigraph beside what it stands for, out of order, or with rates that cannot be."""
     for name in ("rate", "begin", "end"):
         if given(feed, name):
@@ -227,7 +224,7 @@ def _sedigraph(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]
         yield CaseError(f"{key}.sedigraph", None, "brings no grain: every rate is 0")
 
 
-def _rate(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+def _rate(case: Case, key: str, feed: FeedSection) -> Iterator[CaseError]:
     course, begin = sedigraph_of(case, feed), feed_begin(case, feed)
     rate, unit = (max(course.y), unit_of(case, feed)) if course is not None else feed.rate or (0.0, "")
     text, end, which = f"{rate:g} {unit}", feed_end(case, feed), "rate" if course is None else "sedigraph"
@@ -270,7 +267,7 @@ def _rate(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _targets(case: "Case") -> Iterator[CaseError]:
+def _targets(case: Case) -> Iterator[CaseError]:
     """Find feeds outside the domain that the case gives."""
     low, high = case.domain.low, case.domain.high
     for k, feed in enumerate(case.feeds):
@@ -282,7 +279,7 @@ def _targets(case: "Case") -> Iterator[CaseError]:
                 break
 
 
-def _reach(case: "Case", key: str, one: ExitSection) -> Iterator[CaseError]:
+def _reach(case: Case, key: str, one: ExitSection) -> Iterator[CaseError]:
     """Find exits that no grain can get to: outside the domain, or behind a plane that is never removed."""
     corners = None
     if one.low is not None and one.high is not None:

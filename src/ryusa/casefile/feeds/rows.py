@@ -1,7 +1,6 @@
 """Rows of [[feeds]] and [[exits]] in an explained case."""
 
-from typing import TYPE_CHECKING
-
+from ryusa.casefile.case import Case
 from ryusa.casefile.feeds.values import (
     FULLEST,
     FULLEST_PLANE,
@@ -15,13 +14,10 @@ from ryusa.casefile.feeds.values import (
 )
 from ryusa.casefile.rows import ExplainRow, count, number, word
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 _DENSE = 0.6  # of the fullest share, from which some grains wait for a place
 
 
-def traffic_rows(case: "Case") -> list[ExplainRow]:
+def traffic_rows(case: Case) -> list[ExplainRow]:
     """Rates, numbers and room of every feed; where grains leave."""
     rows: list[ExplainRow] = []
     most = FULLEST_PLANE if case.motion.plane else FULLEST

@@ -2,33 +2,30 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.course import Points, points_of
 from ryusa.casefile.feeds.schema import FeedSection, read_rate
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import mass, mean_cube, sized_as
+from ryusa.casefile.grains.values import mass, mean_cube, sized_as
 from ryusa.casefile.row.reach_source import fed_by_reach_in_all
 from ryusa.model.arrays import Floats
 from ryusa.model.course import Course
 from ryusa.model.wall_feeds import corners_of_disc
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 FULLEST = 0.38  # largest share of a volume that spheres take that are placed at random one after another
 FULLEST_PLANE = 0.547  # discs in a plane
 
 
-def feed_begin(case: "Case", feed: FeedSection) -> float:
+def feed_begin(case: Case, feed: FeedSection) -> float:
     """When the first grain of a feed is due [s]."""
     course = sedigraph_of(case, feed)
     return feed.begin if course is None else course.when(0.0)
 
 
-def feed_end(case: "Case", feed: FeedSection) -> float:
+def feed_end(case: Case, feed: FeedSection) -> float:
     """When the last grain of a feed may be due [s]; inf where the case does not say."""
     ends = [one for one in (feed.end, case.stop.time) if one is not None]
     if (course := sedigraph_of(case, feed)) is not None:
@@ -36,7 +33,7 @@ def feed_end(case: "Case", feed: FeedSection) -> float:
     return min([*ends, end_of_total(case, feed)])
 
 
-def end_of_total(case: "Case", feed: FeedSection) -> float:
+def end_of_total(case: Case, feed: FeedSection) -> float:
     """When a feed has brought its `total` [s]; inf without one, and where it never has."""
     if feed.total is None:
         return math.inf
@@ -50,7 +47,7 @@ def end_of_total(case: "Case", feed: FeedSection) -> float:
     return feed.begin + amount / feed.rate[0] if feed.rate is not None and feed.rate[0] > 0.0 else math.inf
 
 
-def sedigraph_of(case: "Case", feed: FeedSection) -> Course | None:
+def sedigraph_of(case: Case, feed: FeedSection) -> Course | None:
     """Rate of a feed over time, in its unit; None where none is given."""
     if feed.sedigraph is None:
         return None
@@ -58,14 +55,14 @@ def sedigraph_of(case: "Case", feed: FeedSection) -> Course | None:
     return Course(tuple(t for t, _ in points), tuple(rate for _, (rate, _) in points))
 
 
-def sedigraph_points(case: "Case", feed: FeedSection) -> Points:
+def sedigraph_points(case: Case, feed: FeedSection) -> Points:
     """Points of a sedigraph as given, or as its file holds them."""
     key = f"feeds.{case.feeds.index(feed)}.sedigraph"
     assert feed.sedigraph is not None
-    return points_of(case, key, feed.sedigraph, "rate", read_rate, "'t [s],rate [kg/s]'")
+    return points_of(case.folder, key, feed.sedigraph, "rate", read_rate, "'t [s],rate [kg/s]'")
 
 
-def unit_of(case: "Case", feed: FeedSection) -> str:
+def unit_of(case: Case, feed: FeedSection) -> str:
     """Unit of the rate of a feed: kg/s or grains/s; nothing where none of its own grains come."""
     if feed.sedigraph is not None:
         return str(sedigraph_points(case, feed)[0][1][1])
@@ -81,7 +78,7 @@ def corners_of(feed: FeedSection) -> tuple[Floats, Floats] | None:
     return corners_of_disc(feed.centre, np.array(feed.normal) / math.hypot(*feed.normal), feed.radius)
 
 
-def mean_mass(case: "Case", material: str | None = None) -> float:
+def mean_mass(case: Case, material: str | None = None) -> float:
     """Mean mass of a grain of the size distribution of a material [kg]; not the mass of the mean grain."""
     sized = sized_as(case, material)
     d = reference_diameter(sized)
@@ -91,14 +88,14 @@ def mean_mass(case: "Case", material: str | None = None) -> float:
     return heavier * mass(sized, d)[0] * mean_cube(sized) / d**3
 
 
-def grains_per_second(case: "Case", feed: FeedSection) -> float:
+def grains_per_second(case: Case, feed: FeedSection) -> float:
     """Grains of its own that a feed brings in a second, at most where its rate changes."""
     course = sedigraph_of(case, feed)
     rate = max(course.y) if course is not None else 0.0 if feed.rate is None else feed.rate[0]
     return rate / mean_mass(case, feed.material) if unit_of(case, feed) == "kg/s" else rate
 
 
-def fed_amount(case: "Case", feed: FeedSection) -> float:
+def fed_amount(case: Case, feed: FeedSection) -> float:
     """Grains or kilograms, as its rate has it, that a feed brings up to its end."""
     begin, end = feed_begin(case, feed), feed_end(case, feed)
     if (course := sedigraph_of(case, feed)) is not None:
@@ -106,18 +103,18 @@ def fed_amount(case: "Case", feed: FeedSection) -> float:
     return 0.0 if feed.rate is None else feed.rate[0] * (end - begin)
 
 
-def fed_count(case: "Case", feed: FeedSection) -> int:
+def fed_count(case: Case, feed: FeedSection) -> int:
     """Number of its own grains that a feed brings; by the mean mass where its rate is a mass."""
     each = mean_mass(case, feed.material) if unit_of(case, feed) == "kg/s" else 1.0
     return math.ceil(fed_amount(case, feed) / each * (1.0 - 1e-12))
 
 
-def fed_in_all(case: "Case") -> int:
+def fed_in_all(case: Case) -> int:
     """Number of grains that all feeds bring, that of a feeder reach too."""
     return sum(fed_count(case, feed) for feed in case.feeds) + fed_by_reach_in_all(case)
 
 
-def share_filled(case: "Case", feed: FeedSection, rate: float) -> float:
+def share_filled(case: Case, feed: FeedSection, rate: float) -> float:
     """Share of the volume (in a plane scene area) at a feed that its grains fill [-].
 
     Parameters

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.feeds.schema import FeedSection
 from ryusa.casefile.feeds.values import corners_of, feed_end, grains_per_second, mean_mass
@@ -13,12 +13,9 @@ from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import discharge_of, hydrograph_of, width_of
 from ryusa.casefile.row.reach_source import fed_by_reach
-from ryusa.casefile.row.schema import RowDamSection, row_keys
+from ryusa.casefile.row.schema import RowDamSection
 from ryusa.casefile.row.values import bed_over, bottom_points, crest_of, dam_span, normal_depth, row_plan
 from ryusa.laws.transport import solid_discharge_smart_jaeggi
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 GENTLEST, STEEPEST = 0.005, 0.2  # slopes of the experiments of Smart and Jaeggi [-]
 THRESHOLD = 0.05  # Shields number at the threshold of motion [-]
@@ -49,7 +46,7 @@ class DamDeposit:
     adapts: float
 
 
-def capacity(case: "Case", angle: float, q: float) -> float:
+def capacity(case: Case, angle: float, q: float) -> float:
     """Volume of grains that uniform flow of a discharge [m2/s] carries on a slope [rad], per width [m2/s].
 
     nan without a discharge, for grains that do not sink, and outside the slopes of the formula.
@@ -65,7 +62,7 @@ def capacity(case: "Case", angle: float, q: float) -> float:
     return solid_discharge_smart_jaeggi(q, tangent, depth, s, d, spread, THRESHOLD)
 
 
-def shields_number(case: "Case", angle: float, depth: float) -> float:
+def shields_number(case: Case, angle: float, depth: float) -> float:
     """Shields number of uniform flow of a depth [m] on a slope [rad] [-]; nan for grains that do not sink."""
     wet = case.water
     if wet is None or not case.grains.density > wet.density:
@@ -73,7 +70,7 @@ def shields_number(case: "Case", angle: float, depth: float) -> float:
     return depth * math.sin(angle) / ((case.grains.density / wet.density - 1.0) * reference_diameter(case))
 
 
-def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
+def dam_deposit(case: Case, dam: RowDamSection) -> DamDeposit | None:
     """The deposit that feeds build behind a dam; None where no estimate can be made.
 
     Notes
@@ -84,7 +81,7 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     the second dam below a feed, for one that lets water through, for a hydrograph or a feeder reach, and for
     a feed beyond the formula, of another material, or to which an exit leads.
     """
-    keys, width, plan = row_keys(case), width_of(case), row_plan(case)
+    keys, width, plan = case.row, width_of(case), row_plan(case)
     first = plan.x_low + dam_span(plan, dam)[0] * plan.dx
     feeds = [(at, one) for one in case.feeds if (at := _place(one)) is not None and at < first]
     back = {one.to for one in case.exits}
@@ -102,7 +99,7 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
         return None
     x = np.linspace(start, first, 4001)
     low = np.interp(x, *np.array(bottom_points(case)).T) + bed_over(case, x)
-    room = crest_of(plan, dam) + (first - x) * math.tan(angle - slope(case)) - low
+    room = crest_of(plan, dam) + (first - x) * math.tan(angle - slope(case.motion)) - low
     half = 0.5 * reference_diameter(case)
     shut = np.flatnonzero(room <= -half)
     taken = room[shut[-1] + 1 if len(shut) else 0 :].clip(0.0)
@@ -125,14 +122,14 @@ def _place(feed: FeedSection) -> float | None:
     return None if corners is None else float(0.5 * (corners[0][0] + corners[1][0]))
 
 
-def _volume_rate(case: "Case", feed: FeedSection) -> float:
+def _volume_rate(case: Case, feed: FeedSection) -> float:
     """Volume of grains that a feed brings [m3/s]."""
     own = case.materials.get(feed.material or "")
     density = (own.density if own is not None else None) or case.grains.density
     return grains_per_second(case, feed) * mean_mass(case, feed.material) / density
 
 
-def _slope_that_carries(case: "Case", rate: float) -> float | None:
+def _slope_that_carries(case: Case, rate: float) -> float | None:
     """Slope at which uniform flow carries a volume per width [m2/s] [rad]; None beyond the formula."""
     low, high = math.atan(GENTLEST), math.atan(STEEPEST)
     q = discharge_of(case)

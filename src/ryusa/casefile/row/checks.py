@@ -2,16 +2,16 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.schema import ColumnSection
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.end_checks import check_courses, check_ends
 from ryusa.casefile.row.ends import discharge_of, levels_of, peak_discharge
-from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
+from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
     MOST_CELLS,
@@ -36,9 +36,6 @@ from ryusa.errors import CaseError
 from ryusa.laws.families import Pressure
 from ryusa.model.row import STEEPEST
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 MOST_SEGMENTS = 100_000
 _FORMS = (
     "must be 'stress' in a row: with a sloping surface 'weight' counts the pressure twice, and with "
@@ -46,9 +43,9 @@ _FORMS = (
 )
 
 
-def check_row(case: "Case") -> Iterator[CaseError]:
+def check_row(case: Case) -> Iterator[CaseError]:
     """Find faults of a row of columns."""
-    keys, water = row_keys(case), case.water
+    keys, water = case.row, case.water
     if keys is None or water is None:
         return
     if water.profile != "column":
@@ -59,9 +56,9 @@ def check_row(case: "Case") -> Iterator[CaseError]:
             f'is for water alone so far; among grains take "{Pressure.HYDROSTATIC.word}"',
         )  # fmt: skip
     if stream(case):
-        found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(column_keys(case))]
+        found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(case.column)]
     elif water_alone(case):
-        found = [*_grains(case), *_ending(case), *_water(case, water), *_column(column_keys(case))]
+        found = [*_grains(case), *_ending(case), *_water(case, water), *_column(case.column)]
     else:
         yield from _among_grains(case, keys)
         return
@@ -72,9 +69,9 @@ def check_row(case: "Case") -> Iterator[CaseError]:
         yield from check_places(case, keys)
 
 
-def _among_grains(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def _among_grains(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """Grains go in a periodic row over a level bottom, with the depth over their bed as in one column."""
-    water, column, kind = case.water, column_keys(case), case.build.kind
+    water, column, kind = case.water, case.column, case.build.kind
     assert water is not None
     for name, what in (("feeds", case.feeds), ("exits", case.exits)):
         if what:
@@ -104,7 +101,7 @@ def _among_grains(case: "Case", keys: RowSection) -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _grains(case: "Case") -> Iterator[CaseError]:
+def _grains(case: Case) -> Iterator[CaseError]:
     """Things that act on grains alone."""
     if getattr(case.build, "plate", None) is not None:
         yield CaseError("build.plate", case.build.plate, "fixed grains do not act on a row of columns yet")  # pyright: ignore[reportAttributeAccessIssue]
@@ -123,7 +120,7 @@ def _grains(case: "Case") -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def _ending(case: "Case") -> Iterator[CaseError]:
+def _ending(case: Case) -> Iterator[CaseError]:
     """A row with ends runs for a time, and water needs gravity."""
     if case.stop.time is None:
         yield CaseError("stop.time", None, "missing; a row of columns ends at a time")
@@ -131,7 +128,7 @@ def _ending(case: "Case") -> Iterator[CaseError]:
         yield CaseError("motion.gravity", case.motion.gravity, "must be above 0: a row has a free surface")
 
 
-def _water(case: "Case", water: WaterSection) -> Iterator[CaseError]:
+def _water(case: Case, water: WaterSection) -> Iterator[CaseError]:
     """Keys of [water] that mean something else in a row, or nothing."""
     for key in ("tau_star", "u_star"):
         if getattr(water, key) is not None:
@@ -202,7 +199,7 @@ def _driver(keys: ColumnSection) -> Iterator[CaseError]:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
 
 
-def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[CaseError]:
+def _lines(case: Case, keys: RowSection, water: WaterSection) -> Iterator[CaseError]:
     """Points of bottom and surface in their order, and a division into segments."""
     lines = [("bottom", keys.bottom)] + ([] if keys.surface is None else [("surface", keys.surface)])
     for name, one in lines:
@@ -243,7 +240,7 @@ def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[Case
         )  # fmt: skip
 
 
-def _shape(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def _shape(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """What only the divided row shows: slopes, cells, dams, depths."""
     points = np.array(bottom_points(case))
     angles = np.arctan2(np.diff(points[:, 1]), np.diff(points[:, 0]))
@@ -256,7 +253,7 @@ def _shape(case: "Case", keys: RowSection) -> Iterator[CaseError]:
             "flume, or make a step with [[water.row.dams]]",
         )  # fmt: skip
         return
-    plan, column = row_plan(case), column_keys(case)
+    plan, column = row_plan(case), case.column
     rough = case.water.roughness or reference_diameter(case) if case.water is not None else math.nan
     if plan.n * plan.n_cell > MOST_CELLS:
         yield CaseError(
@@ -328,7 +325,7 @@ def _dam(plan: RowPlan, dam: RowDamSection, key: str, first: int, end: int) -> I
         )  # fmt: skip
 
 
-def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
+def _depths(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
     """Water at the start within the cells, and a row that is not dry for ever."""
     high = plan.n_cell * plan.cell
     depth = plan.start - plan.bottom
@@ -349,13 +346,13 @@ def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError
         )  # fmt: skip
     yield from _inlet(case, plan, keys)
     largest = float(np.abs(np.arctan(np.diff(plan.bottom) / plan.dx)).max(initial=0.0))
-    if abs(slope(case)) + largest > math.radians(60.0):
+    if abs(slope(case.motion)) + largest > math.radians(60.0):
         yield CaseError(
             "motion.slope", case.motion.slope, "is too steep for water in layers: at most 60 deg in all"
         )
 
 
-def _inlet(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
+def _inlet(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
     """A dry first segment gives no depth to an inlet that has none of its own and no bed to enter over."""
     end, q = keys.upstream, discharge_of(case)
     if end is None or not q > 0.0 or inlet_depth(case) is not None or plan.start[0] > plan.bottom[0]:

@@ -1,8 +1,9 @@
 """Checks of the ends of a row: keys that are missing or have no effect, and courses that cannot be."""
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.course import faults_of_course
 from ryusa.casefile.row.ends import (
     HYDROGRAPH,
@@ -13,13 +14,10 @@ from ryusa.casefile.row.ends import (
     width_of,
 )
 from ryusa.casefile.row.reach import END
-from ryusa.casefile.row.schema import RowEndSection, RowSection, row_keys
+from ryusa.casefile.row.schema import RowEndSection, RowSection
 from ryusa.casefile.row.values import bottom_points
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 _NEEDS = {"level": ("level", "stage"), "discharge": ("discharge", "hydrograph")}  # one of them
 _TAKES = {
@@ -28,7 +26,7 @@ _TAKES = {
 _OTHER_END = "give [water.row.{}] with end = 'wall', 'level', 'free fall' or 'same depth'"
 
 
-def check_ends(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def check_ends(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """Each end with what it needs, and both or none."""
     ends = {"upstream": keys.upstream, "downstream": keys.downstream}
     for name, end in ends.items():
@@ -50,7 +48,7 @@ def check_ends(case: "Case", keys: RowSection) -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
+def _end(case: Case, name: str, end: RowEndSection) -> Iterator[CaseError]:
     key = f"water.row.{name}"
     if end.end in {"discharge", END} and name == "downstream":
         yield CaseError(
@@ -78,9 +76,9 @@ def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def check_courses(case: "Case") -> Iterator[CaseError]:
+def check_courses(case: Case) -> Iterator[CaseError]:
     """Find a hydrograph and a stage beside what they stand for, or with values that cannot be."""
-    keys = row_keys(case)
+    keys = case.row
     if keys is None:
         return
     for end, name, other, key in (
@@ -100,7 +98,7 @@ def check_courses(case: "Case") -> Iterator[CaseError]:
             yield from _discharges(case, end, points)
 
 
-def _discharges(case: "Case", end: RowEndSection, points: Iterable[tuple[float, Any]]) -> Iterator[CaseError]:
+def _discharges(case: Case, end: RowEndSection, points: Iterable[tuple[float, Any]]) -> Iterator[CaseError]:
     """Find discharges against the stream, without a width, or beside a depth that would stay."""
     for t, (q, unit) in points:
         if not q >= 0.0:

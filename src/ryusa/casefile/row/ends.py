@@ -1,22 +1,19 @@
 """What enters a row upstream and what lies beyond its ends: discharge and level, constant or over time."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.case import Case
 from ryusa.casefile.course import Points, points_of
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import Discharge, RowEndSection, RowSection, read_discharge, row_keys
+from ryusa.casefile.row.schema import Discharge, RowEndSection, RowSection, read_discharge
 from ryusa.model.course import Course
 from ryusa.units import quantity
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 HYDROGRAPH, STAGE = "water.row.upstream.hydrograph", "water.row.downstream.stage"
 
 
-def discharge_of(case: "Case") -> float:
+def discharge_of(case: Case) -> float:
     """Discharge per width that enters upstream [m2/s]; nan where none is given."""
     if (reach := reach_of(case)) is not None:
         return reach.discharge
@@ -28,7 +25,7 @@ def discharge_of(case: "Case") -> float:
     return per_width(case, end.discharge)
 
 
-def hydrograph_of(case: "Case") -> Course | None:
+def hydrograph_of(case: Case) -> Course | None:
     """Discharge per width over time [m2/s] that enters upstream; None where none is given."""
     end = _row(case).upstream
     if end is None or end.hydrograph is None:
@@ -37,12 +34,12 @@ def hydrograph_of(case: "Case") -> Course | None:
     return Course(tuple(t for t, _ in points), tuple(per_width(case, q) for _, q in points))
 
 
-def hydrograph_points(case: "Case", given: Any) -> Points:
+def hydrograph_points(case: Case, given: Any) -> Points:
     """Points of a hydrograph as given, or as its file holds them."""
-    return points_of(case, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
+    return points_of(case.folder, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
 
 
-def stage_of(case: "Case") -> Course | None:
+def stage_of(case: Case) -> Course | None:
     """Height of the surface beyond the lower end over time [m]; None where none is given."""
     end = _row(case).downstream
     if end is None or end.stage is None:
@@ -50,16 +47,16 @@ def stage_of(case: "Case") -> Course | None:
     return Course(*map(tuple, zip(*stage_points(case, end.stage), strict=True)))  # pyright: ignore[reportArgumentType]
 
 
-def stage_points(case: "Case", given: Any) -> Points:
+def stage_points(case: Case, given: Any) -> Points:
     """Points of a stage as given, or as its file holds them."""
-    return points_of(case, STAGE, given, "z", _metres, "'t [s],z [m]'")
+    return points_of(case.folder, STAGE, given, "z", _metres, "'t [s],z [m]'")
 
 
 def _metres(value: str) -> float:
     return quantity(value, "m")
 
 
-def levels_of(case: "Case", end: RowEndSection) -> list[float]:
+def levels_of(case: Case, end: RowEndSection) -> list[float]:
     """Heights of the surface beyond an end during a run [m], that of the start first; none elsewhere."""
     row, first = _row(case), [] if end.level is None else [end.level]
     if end is not row.downstream:
@@ -69,7 +66,7 @@ def levels_of(case: "Case", end: RowEndSection) -> list[float]:
     return first + [one.level for one in case.timeline if one.level is not None]
 
 
-def per_width(case: "Case", discharge: Discharge) -> float:
+def per_width(case: Case, discharge: Discharge) -> float:
     """A discharge per width [m2/s]; nan for one of the whole width where that is not given."""
     value, unit = discharge
     if unit == "m2/s":
@@ -78,29 +75,29 @@ def per_width(case: "Case", discharge: Discharge) -> float:
     return math.nan if width is None else value / width
 
 
-def peak_discharge(case: "Case") -> float:
+def peak_discharge(case: Case) -> float:
     """Largest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
     return max(_discharges(case))
 
 
-def least_discharge(case: "Case") -> float:
+def least_discharge(case: Case) -> float:
     """Smallest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
     return min(_discharges(case))
 
 
-def _discharges(case: "Case") -> list[float]:
+def _discharges(case: Case) -> list[float]:
     if (course := hydrograph_of(case)) is not None:
         return [*course.extremes(0.0, case.stop.time or math.inf)]
     steps = [per_width(case, one.discharge) for one in case.timeline if one.discharge is not None]
     return [discharge_of(case), *steps]
 
 
-def width_of(case: "Case") -> float | None:
+def width_of(case: Case) -> float | None:
     """Width of the stream [m]; None if not given."""
-    return _row(case).width or column_keys(case).side_walls
+    return _row(case).width or case.column.side_walls
 
 
-def _row(case: "Case") -> RowSection:
-    keys = row_keys(case)
+def _row(case: Case) -> RowSection:
+    keys = case.row
     assert keys is not None
     return keys

@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.row.ends import (
     HYDROGRAPH,
     STAGE,
@@ -12,16 +12,12 @@ from ryusa.casefile.row.ends import (
     stage_of,
     width_of,
 )
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
 from ryusa.model.course import Course
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def hydrograph_rows(case: "Case") -> list[ExplainRow]:
+def hydrograph_rows(case: Case) -> list[ExplainRow]:
     """Rows of the discharges and levels after the first."""
     rows = [
         number(
@@ -45,7 +41,7 @@ def hydrograph_rows(case: "Case") -> list[ExplainRow]:
     return rows
 
 
-def _course(case: "Case", name: str, course: Course, unit: str, key: str) -> ExplainRow:
+def _course(case: Case, name: str, course: Course, unit: str, key: str) -> ExplainRow:
     """A course from its first point to its last."""
     end = case.stop.time or math.inf
     text = f"{min(course.y):.4g} to {max(course.y):.4g} {unit}"
@@ -59,9 +55,9 @@ def _course(case: "Case", name: str, course: Course, unit: str, key: str) -> Exp
     )  # fmt: skip
 
 
-def check_hydrograph(case: "Case") -> Iterator[CaseError]:
+def check_hydrograph(case: Case) -> Iterator[CaseError]:
     """Find discharges and levels of the timeline without the end they belong to, and those that are none."""
-    keys = row_keys(case)
+    keys = case.row
     below = None if keys is None else keys.downstream
     for k, one in enumerate(case.timeline):
         if one.level is not None and (below is None or below.end != "level"):

@@ -1,18 +1,14 @@
 """Meshes that stand in a row of columns: whether they lie in it, and agree with its dams."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.case import Case
 from ryusa.casefile.row.values import RowPlan, crest_of, row_plan, stream
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.errors import CaseError
 from ryusa.model.arrays import Floats
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 Boxes = list[tuple[str, Floats, Floats]]  # name of the wall, lowest and highest corner [m]
 
@@ -21,7 +17,7 @@ UNITS = {"mm": 1.0e-3, "cm": 1.0e-2, "in": 0.0254, "ft": 0.3048, "m": 1.0}  # a 
 
 
 def check_mesh_in_row(
-    case: "Case", key: str, unit: str, low: Floats, high: Floats, d: float
+    case: Case, key: str, unit: str, low: Floats, high: Floats, d: float
 ) -> Iterator[CaseError]:
     """Find a mesh too long for the row, or beside, above or below it; `d` is the largest grain [m]."""
     if not stream(case):
@@ -56,9 +52,9 @@ def _guess(unit: str, along: float, length: float, d: float) -> str:
     return f". It would be {', '.join(fits)} long" if fits else ""
 
 
-def dam_rows(case: "Case", meshes: Boxes, d: float) -> list[ExplainRow]:
+def dam_rows(case: Case, meshes: Boxes, d: float) -> list[ExplainRow]:
     """Warnings about dams whose crest is not that of the mesh which stands there."""
-    keys = row_keys(case)
+    keys = case.row
     if keys is None or not keys.dams or not stream(case):
         return []
     plan = row_plan(case)

@@ -2,22 +2,18 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.resolved import resolved_contact
 from ryusa.casefile.row.ends import width_of
 from ryusa.casefile.row.reach import END, KEY, NAME
 from ryusa.casefile.row.reach_source import reach_of, run_of_reach
-from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.model.row import AGREE
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 # Keys of the sections that may differ: the flow follows from ends and bottom, and grids are their own.
 _FREE = {
@@ -30,9 +26,9 @@ _FREE = {
 _TABLES = {"column": "water.column"}  # of a section, where its name is another
 
 
-def check_reach(case: "Case") -> Iterator[CaseError]:
+def check_reach(case: Case) -> Iterator[CaseError]:
     """Find a feeder reach that is missing, cannot supply a river, or is unlike this one."""
-    keys = row_keys(case)
+    keys = case.row
     if keys is None:
         return
     for side, end in (("upstream", keys.upstream), ("downstream", keys.downstream)):
@@ -56,7 +52,7 @@ def check_reach(case: "Case") -> Iterator[CaseError]:
         yield error
         return
     assert reach is not None
-    if case.materials or has_clumps(case):
+    if case.materials or has_clumps(case.grains):
         yield CaseError(KEY, name, "brings spheres of one material, and this case has others: take one")
     for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
         for k, one in enumerate(entries):
@@ -64,7 +60,7 @@ def check_reach(case: "Case") -> Iterator[CaseError]:
                 yield CaseError(f"{kind}.{k}.name", NAME, "is the name of the feed of the feeder reach")
 
 
-def check_unlike_reach(case: "Case") -> Iterator[CaseError]:
+def check_unlike_reach(case: Case) -> Iterator[CaseError]:
     """Find what differs between a case without other faults and its reach."""
     reach, build = reach_of(case), case.build
     if reach is None or build.kind != "stream" or (width := width_of(case)) is None:
@@ -87,7 +83,7 @@ def check_unlike_reach(case: "Case") -> Iterator[CaseError]:
         "contact": resolved_contact(case),
         "rolling": case.rolling.model_dump(mode="json"),
         "water": wet.model_dump(mode="json"),
-        "column": column_keys(case).model_dump(mode="json") | {"packed": packed(case)},
+        "column": case.column.model_dump(mode="json") | {"packed": packed(case)},
     }
     theirs = {name: reach.case.get(name) or {} for name in ours}
     theirs["column"] = theirs["water"].get("column") or {}

@@ -1,8 +1,8 @@
 """Rows of `ryusa check` about the feeder reach of a river."""
 
 import math
-from typing import TYPE_CHECKING
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.reach import KEY
@@ -10,15 +10,12 @@ from ryusa.casefile.row.reach_source import fed_by_reach_in_all, reach_of
 from ryusa.casefile.row.values import inlet_tilt, reach_froude
 from ryusa.casefile.rows import ExplainRow, Flag, count, number
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 CLOSE = 0.01  # relative difference of slopes or of diameters from which `check` notes it
 COARSE = 0.25  # of a diameter, error of a height from which `check` notes the frames of the reach
 KNOWN = 0.1  # relative standard error of its transport from which `check` notes it
 
 
-def reach_rows(case: "Case") -> list[ExplainRow]:
+def reach_rows(case: Case) -> list[ExplainRow]:
     """Rows about what a feeder reach supplies; none without one."""
     reach, end = reach_of(case), case.stop.time
     if reach is None or end is None:
@@ -44,7 +41,7 @@ def reach_rows(case: "Case") -> list[ExplainRow]:
         ),
         count("water", "grains from the reach", fed_by_reach_in_all(case), "crossings of its downstream end"),
     ]  # fmt: skip
-    theirs, ours = math.tan(reach.slope), math.tan(slope(case) - inlet_tilt(case))
+    theirs, ours = math.tan(reach.slope), math.tan(slope(case.motion) - inlet_tilt(case))
     if abs(theirs - ours) > CLOSE * abs(theirs):
         about = (
             f"the bottom at the upper end of the river falls at {ours:.4g}: it carries on "

@@ -4,36 +4,32 @@ import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.case import Case
+from ryusa.casefile.files import inside
 from ryusa.casefile.row.reach import END, KEY, FeederReach, digest_of
 from ryusa.casefile.row.reach_record import supplied
-from ryusa.casefile.row.schema import row_keys
 from ryusa.errors import CaseError, ResultsError
 from ryusa.model.arrays import Floats
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 _SHIFT = 0x5245  # tells the lateral shifts from other numbers drawn from the seed
 
 
-def run_of_reach(case: "Case") -> str | None:
+def run_of_reach(case: Case) -> str | None:
     """Run folder of the feeder reach at the upper end of the row of a case; None without one."""
-    keys = row_keys(case)
+    keys = case.row
     end = None if keys is None else keys.upstream
     return end.run if end is not None and end.end == END else None
 
 
-def fed_by_reach(case: "Case") -> bool:
+def fed_by_reach(case: Case) -> bool:
     """Whether a feeder reach supplies the upper end of the row of a case."""
     return run_of_reach(case) is not None
 
 
-def reach_of(case: "Case") -> FeederReach | None:
+def reach_of(case: Case) -> FeederReach | None:
     """The feeder reach of a case; None without one.
 
     Raises
@@ -45,7 +41,7 @@ def reach_of(case: "Case") -> FeederReach | None:
         return None
     from ryusa.results import schema
 
-    folder, path = folder_of(case), inside(case, KEY, name)
+    folder, path = case.folder, inside(case.folder, KEY, name)
     kept = folder / schema.REACH
     if schema.is_run_folder(folder) and kept.is_file() and not kept.is_symlink():
         return _kept(kept, name, kept.stat().st_mtime_ns)
@@ -95,7 +91,7 @@ class Repeated:
     which: np.ndarray  # number of the crossing in the record, shape (n,), int64
 
 
-def repeated(case: "Case", reach: FeederReach) -> Repeated:
+def repeated(case: Case, reach: FeederReach) -> Repeated:
     """When and where across each grain of a reach is due in a river.
 
     Notes
@@ -120,7 +116,7 @@ def repeated(case: "Case", reach: FeederReach) -> Repeated:
     return Repeated(np.concatenate(times), np.concatenate(places), np.concatenate(which))
 
 
-def fed_by_reach_in_all(case: "Case") -> int:
+def fed_by_reach_in_all(case: Case) -> int:
     """Number of grains that a feeder reach brings; 0 without one."""
     reach, end = reach_of(case), case.stop.time
     if reach is None or end is None:

@@ -1,20 +1,20 @@
 """Rows of `ryusa check` about a row of columns: its grid, its flow, its dams and its time step."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.table import bed_of_run, table_of
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.ends import discharge_of, least_discharge, peak_discharge, width_of
 from ryusa.casefile.row.hydrograph import hydrograph_rows
 from ryusa.casefile.row.reach_rows import reach_rows
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
+from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.casefile.row.values import (
     COURANT,
     SPARE,
@@ -37,12 +37,8 @@ from ryusa.casefile.row.values import (
     water_alone,
 )
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
-from ryusa.casefile.walls import box_of
+from ryusa.casefile.walls.mesh import box_of
 from ryusa.laws.families import Pressure
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
 # Segments of a crest, and q/(sqrt(g) H^1.5) over it in a row, of `ryusa validate river` (design/0027)
 _CRESTS = ((1, 0.561), (2, 0.513), (3, 0.497), (5, 0.484), (10, 0.476))
@@ -50,9 +46,9 @@ WHOLE = 0.01  # of a cell: a dam that is as near to whole cells is of them
 _NEAR = 0.15  # distance of a Froude number from 1 within which a flow is undular in nature
 
 
-def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def row_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Rows about the row of a case; none where it has none."""
-    keys = row_keys(case)
+    keys = case.row
     if keys is None:
         return []
     alone = water_alone(case)
@@ -63,16 +59,16 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     return [*about, *(_step(case, derived, plan) if alone else [*_bed(case), *_walls(case)])]
 
 
-def _walls(case: "Case") -> list[ExplainRow]:
+def _walls(case: Case) -> list[ExplainRow]:
     """Walls of a stream that only its grains meet."""
     rows: list[ExplainRow] = []
-    if case.build.kind == "stream" and case.build.walls and column_keys(case).side_walls is None:
+    if case.build.kind == "stream" and case.build.walls and case.column.side_walls is None:
         about = "build.walls; give water.column.side_walls = water.row.width for their friction on the water"
         rows.append(word("water", "side walls", "for grains alone", about, "note"))
-    dams = () if (keys := row_keys(case)) is None else keys.dams
+    dams = () if (keys := case.row) is None else keys.dams
     without: list[str] = []
     for k, one in enumerate(case.walls):
-        low, high = box_of(case, one, f"walls.{k}")
+        low, high = box_of(case.folder, one, f"walls.{k}")
         if not any(dam.begin < high[0] and dam.end > low[0] for dam in dams):
             without.append(f"'{one.name}'")
     if not without:
@@ -82,7 +78,7 @@ def _walls(case: "Case") -> list[ExplainRow]:
     return [*rows, word("water", "walls for grains alone", names, about, "note")]
 
 
-def _segments(case: "Case", ends: str) -> list[ExplainRow]:
+def _segments(case: Case, ends: str) -> list[ExplainRow]:
     x_low, dx, n = segments_of(case)
     return [
         number("water", "length of the row", n * dx, "m", f"x = {x_low:g} to {x_low + n * dx:g} m"),
@@ -91,7 +87,7 @@ def _segments(case: "Case", ends: str) -> list[ExplainRow]:
     ]
 
 
-def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
+def _grid(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     high = plan.n_cell * plan.cell
     by = (
         "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
@@ -109,12 +105,12 @@ def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     ]  # fmt: skip
 
 
-def _bed(case: "Case") -> list[ExplainRow]:
+def _bed(case: Case) -> list[ExplainRow]:
     """The bed at the start."""
     if case.build.kind != "stream" or case.build.bed == 0.0:
         return [word("water", "bed at the start", "none", "build.bed not given: all grains come from feeds")]
     points, (begin, end) = bed_points(case), stream_span(case)
-    if (bed := bed_of_run(case)) is not None:
+    if (bed := bed_of_run(case.build)) is not None:
         table = table_of(case)
         assert table is not None
         origin = (
@@ -133,7 +129,7 @@ def _end(keys: RowSection) -> str:
     return "" if keys.downstream is None else keys.downstream.end
 
 
-def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
+def _flow(case: Case, keys: RowSection) -> list[ExplainRow]:
     """Discharge, critical depth, and normal flow on each reach."""
     q, peak = discharge_of(case), peak_discharge(case)
     if not peak > 0.0:
@@ -169,7 +165,7 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
     return rows
 
 
-def _transport(case: "Case", one: Reach, q: float, more: str) -> list[ExplainRow]:
+def _transport(case: Case, one: Reach, q: float, more: str) -> list[ExplainRow]:
     """Shields number and capacity of normal flow on a reach; a slope beyond the formula has no capacity."""
     stress = shields_number(case, one.slope, one.normal)
     if math.isnan(stress):
@@ -201,7 +197,7 @@ def _reach(one: Reach, more: str) -> list[ExplainRow]:
     ]
 
 
-def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
+def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     rows: list[ExplainRow] = []
     q = discharge_of(case)
     for dam in keys.dams:
@@ -222,7 +218,7 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             )
         )
         if dam.concentration is None and q > 0.0:
-            head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case))))) ** (2.0 / 3.0)
+            head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case.motion))))) ** (2.0 / 3.0)
             origin = f"critical flow without loss, q = (2/3)^1.5 sqrt(g) H^1.5; {_own_head(end - first)}"
             rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
@@ -230,7 +226,7 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     return rows
 
 
-def _in_whole_cells(case: "Case", dam: RowDamSection, plan: RowPlan, crest: float) -> tuple[str, Flag]:
+def _in_whole_cells(case: Case, dam: RowDamSection, plan: RowPlan, crest: float) -> tuple[str, Flag]:
     """Say where the crest of an impermeable dam lies for the water, whose cells it takes whole."""
     first, end = dam_span(plan, dam)
     if dam.concentration is not None or end == first:
@@ -276,7 +272,7 @@ def _deposit_behind(name: str, found: DamDeposit) -> list[ExplainRow]:
     return [behind, number("water", f"time to fill '{name}'", found.time, "s", origin, flag)]
 
 
-def _step(case: "Case", derived: "Derived", plan: RowPlan) -> list[ExplainRow]:
+def _step(case: Case, derived: Derived, plan: RowPlan) -> list[ExplainRow]:
     speed = fastest(case, plan)
     courant = speed * derived.dt / plan.dx
     origin = (

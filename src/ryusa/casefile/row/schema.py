@@ -1,6 +1,6 @@
 """Keys of [water.row]."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 
@@ -10,9 +10,6 @@ from ryusa.casefile.quantities import Count, Length, Moment, Name, Number, Posit
 from ryusa.casefile.section import Section
 from ryusa.laws import families
 from ryusa.units import UnitError, quantity
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 End = Literal["wall", "level", "free fall", "same depth", "discharge", "feeder reach"]
 Discharge = tuple[float, Literal["m2/s", "m3/s"]]
@@ -141,8 +138,3 @@ class RowSection(Section):
     """Lower end, at the last point."""
     dams: tuple[RowDamSection, ...] = ()
     """Dams, weirs and sills: [[water.row.dams]]."""
-
-
-def row_keys(case: "Case") -> RowSection | None:
-    """Keys of [water.row]; None where the case has no row."""
-    return None if case.water is None else case.water.row

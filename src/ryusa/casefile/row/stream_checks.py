@@ -3,14 +3,14 @@
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import BedOfRunSection, StreamSection
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, built_counts, sizes
-from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.schema import ColumnSection
 from ryusa.casefile.feeds.schema import ExitSection
 from ryusa.casefile.feeds.values import corners_of
 from ryusa.casefile.row.ends import width_of
@@ -33,14 +33,11 @@ from ryusa.laws.families import Mixing
 from ryusa.model.arrays import Floats
 from ryusa.model.column import AGREE
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-
 CLOSE = 1.0e-9  # beyond a bound only by rounding [m]
 NAMES = ("bottom", "upstream", "downstream", "right", "left", "grains", "bed")  # taken by builder "stream"
 
 
-def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def check_stream(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """Find what is missing before a row can be divided, with keys that mean nothing in a stream."""
     build = case.build
     assert isinstance(build, StreamSection)
@@ -61,11 +58,11 @@ def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     if width is None or width < least:
         what = "missing; builder 'stream' needs it, and it " if width is None else ""
         yield CaseError("water.row.width", width, f"{what}must be at least {least:.4g} m for these grains")
-    yield from _column(column_keys(case), width)
+    yield from _column(case.column, width)
     yield from _names(case, keys)
 
 
-def _bed(case: "Case", line: Points | str) -> Iterator[CaseError]:
+def _bed(case: Case, line: Points | str) -> Iterator[CaseError]:
     """Find points of the thickness of the bed that do not follow one another, or lie below the bottom."""
     try:
         points = line_points(case, "build.bed", line)
@@ -86,7 +83,7 @@ def _bed(case: "Case", line: Points | str) -> Iterator[CaseError]:
             )  # fmt: skip
 
 
-def _bed_of_run(case: "Case", build: StreamSection, bed: BedOfRunSection) -> Iterator[CaseError]:
+def _bed_of_run(case: Case, build: StreamSection, bed: BedOfRunSection) -> Iterator[CaseError]:
     """Find a run whose grains this stream cannot hold, or that are others, and keys without effect."""
     for name in ("begin", "end", "gap", "jitter"):
         if given(build, name):
@@ -147,7 +144,7 @@ def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:
         )
 
 
-def _names(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def _names(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """Names of dams, which are walls for the grains, and of what the builder makes are used once."""
     others = (*case.walls, *case.planes, *case.feeds, *case.exits)
     taken = {*NAMES, *(one.name for one in others)}
@@ -168,7 +165,7 @@ def _names(case: "Case", keys: RowSection) -> Iterator[CaseError]:
             )
 
 
-def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+def check_places(case: Case, keys: RowSection) -> Iterator[CaseError]:
     """Find a bed outside the row or without a grain, feeds outside it, and ends that lose grains."""
     build = case.build
     assert isinstance(build, StreamSection)
@@ -197,7 +194,7 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
 
 
 def _feed(
-    case: "Case", keys: RowSection, key: str, name: str, low: Floats, high: Floats
+    case: Case, keys: RowSection, key: str, name: str, low: Floats, high: Floats
 ) -> Iterator[CaseError]:
     """Find a feed with its corners [m] beyond the row or its side walls, below the bottom, or in a dam."""
     points, width, build = bottom_points(case), width_of(case), case.build
@@ -224,7 +221,7 @@ def _feed(
             )  # fmt: skip
 
 
-def _outlet(case: "Case", high: float) -> Iterator[CaseError]:
+def _outlet(case: Case, high: float) -> Iterator[CaseError]:
     """All that passes the lower end must leave through an exit."""
     if any(one.low is None and (one.point is None or not any(one.normal or ())) for one in case.exits):
         return  # reported with the exit

@@ -5,31 +5,23 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import BedOfRunSection
 from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.packed import packed
-from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.backwater import backwater, bore_depth, level_of_basin
 from ryusa.casefile.row.ends import levels_of, peak_discharge, width_of
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import (
-    RowDamSection,
-    RowSection,
-    row_keys,
-)
+from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
 from ryusa.model.arrays import Floats
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 CELL = 0.5  # thickness of a cell when the case gives none, in mean diameters
 SPARE = 1.5  # height of the cells over the largest depth to be expected, when the case gives none
@@ -66,7 +58,7 @@ class Reach:
     froude: float  # of normal flow [-]
 
 
-def line_points(case: "Case", key: str, given: Points | str) -> Points:
+def line_points(case: Case, key: str, given: Points | str) -> Points:
     """Points of a line as given, or as its file holds them.
 
     Raises
@@ -75,7 +67,7 @@ def line_points(case: "Case", key: str, given: Points | str) -> Points:
     """
     if not isinstance(given, str):
         return given
-    return contents(case, key, given, inside(case, key, given), _read)
+    return contents(case.folder, key, given, inside(case.folder, key, given), _read)
 
 
 @lru_cache(maxsize=4)
@@ -91,9 +83,9 @@ def not_downstream(points: Points, strictly: bool = False) -> str:
     return ""
 
 
-def line_files(case: "Case") -> list[str]:
+def line_files(case: Case) -> list[str]:
     """Names of the CSV files of the lines of a row, of the bed along it, and of what changes over time."""
-    keys = row_keys(case)
+    keys = case.row
     if keys is None:
         return []
     bed = case.build.bed if case.build.kind == "stream" else None
@@ -102,12 +94,12 @@ def line_files(case: "Case") -> list[str]:
     return [one for one in (keys.bottom, keys.surface, bed, hydrograph, stage) if isinstance(one, str)]
 
 
-def bottom_points(case: "Case") -> Points:
+def bottom_points(case: Case) -> Points:
     """Points of the bottom [m]."""
     return line_points(case, "water.row.bottom", _row(case).bottom)
 
 
-def segments_of(case: "Case") -> tuple[float, float, int]:
+def segments_of(case: Case) -> tuple[float, float, int]:
     """Where the row begins [m], the length of a segment [m], and how many there are."""
     keys, points = _row(case), bottom_points(case)
     length = points[-1][0] - points[0][0]
@@ -115,22 +107,22 @@ def segments_of(case: "Case") -> tuple[float, float, int]:
     return points[0][0], length / count, count
 
 
-def cell_of(case: "Case") -> float:
+def cell_of(case: Case) -> float:
     """Thickness of a cell [m]."""
-    return column_keys(case).cell or CELL * reference_diameter(case)
+    return case.column.cell or CELL * reference_diameter(case)
 
 
-def stream(case: "Case") -> bool:
+def stream(case: Case) -> bool:
     """Whether grains enter and leave a row with ends."""
-    return row_keys(case) is not None and case.build.kind == "stream"
+    return case.row is not None and case.build.kind == "stream"
 
 
-def walls_of_stream(case: "Case") -> tuple[str, ...]:
+def walls_of_stream(case: Case) -> tuple[str, ...]:
     """Names of the walls that builder 'stream' makes for grains and water: the bottom, and the dams."""
     return ("bottom", *(dam.name for dam in _row(case).dams)) if stream(case) else ()
 
 
-def stream_span(case: "Case") -> tuple[float, float]:
+def stream_span(case: Case) -> tuple[float, float]:
     """Where the bed of builder 'stream' begins and ends along x [m]."""
     build, points = case.build, bottom_points(case)
     assert build.kind == "stream"
@@ -142,7 +134,7 @@ def stream_span(case: "Case") -> tuple[float, float]:
     )
 
 
-def bed_points(case: "Case") -> Points:
+def bed_points(case: Case) -> Points:
     """Points of x and thickness [m] of the bed of builder 'stream', from where it begins to where it ends."""
     build, (begin, end) = case.build, stream_span(case)
     assert build.kind == "stream"
@@ -154,7 +146,7 @@ def bed_points(case: "Case") -> Points:
     return (begin, first), *(one for one in line if begin < one[0] < end), (end, last)
 
 
-def _bed_line(case: "Case", given: Points | str | BedOfRunSection) -> Points:
+def _bed_line(case: Case, given: Points | str | BedOfRunSection) -> Points:
     """Points of x and thickness [m] as given; of a run, those of its grains packed in each segment."""
     if not isinstance(given, BedOfRunSection):
         return line_points(case, "build.bed", given)
@@ -171,7 +163,7 @@ def _bed_line(case: "Case", given: Points | str | BedOfRunSection) -> Points:
     )  # fmt: skip
 
 
-def bed_over(case: "Case", x: Floats) -> Floats:
+def bed_over(case: Case, x: Floats) -> Floats:
     """Thickness of the bed of builder 'stream' at x [m], shape as x; 0 with another builder."""
     return _thickness(bed_points(case), x) if case.build.kind == "stream" else np.zeros_like(x)
 
@@ -180,9 +172,9 @@ def _thickness(points: Points, x: Floats) -> Floats:
     return np.interp(x, *np.array(points).T, left=0.0, right=0.0)
 
 
-def water_alone(case: "Case") -> bool:
+def water_alone(case: Case) -> bool:
     """Whether a case is a row without a moving grain, whose step resolves waves instead of contacts."""
-    return row_keys(case) is not None and case.build.kind == "empty" and not case.feeds
+    return case.row is not None and case.build.kind == "empty" and not case.feeds
 
 
 @lru_cache(maxsize=8)
@@ -199,7 +191,7 @@ def _plan(
     return RowPlan(x_low, dx, n, cell, n_cell, x, bottom, start)
 
 
-def row_plan(case: "Case") -> RowPlan:
+def row_plan(case: Case) -> RowPlan:
     """Segments, cells, bottom and first surface of the row of a case."""
     keys, wet = _row(case), case.water
     assert wet is not None
@@ -211,9 +203,9 @@ def row_plan(case: "Case") -> RowPlan:
     return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height, bed)
 
 
-def reaches(case: "Case", q: float) -> list[Reach]:
+def reaches(case: Case, q: float) -> list[Reach]:
     """The straight pieces of the bottom, with normal depth and Froude number of a discharge [m2/s]."""
-    tilt, g = slope(case), case.motion.gravity
+    tilt, g = slope(case.motion), case.motion.gravity
     found: list[Reach] = []
     for (a, low), (b, high) in pairwise(bottom_points(case)):
         angle = tilt - math.atan2(high - low, b - a)
@@ -223,14 +215,14 @@ def reaches(case: "Case", q: float) -> list[Reach]:
     return found
 
 
-def critical_depth(case: "Case", q: float) -> float:
+def critical_depth(case: Case, q: float) -> float:
     """Critical depth of a discharge [m2/s] [m]; nan without one."""
-    return (q * q / (case.motion.gravity * math.cos(slope(case)))) ** (1.0 / 3.0)
+    return (q * q / (case.motion.gravity * math.cos(slope(case.motion)))) ** (1.0 / 3.0)
 
 
-def normal_depth(case: "Case", q: float, angle: float) -> float:
+def normal_depth(case: Case, q: float, angle: float) -> float:
     """Depth of uniform flow of a discharge [m2/s] on a slope [rad], mean of Eq. (9) [m]; nan without."""
-    wet, keys = case.water, column_keys(case)
+    wet, keys = case.water, case.column
     along = case.motion.gravity * math.sin(angle)
     if wet is None or not q > 0.0 or not along > 0.0:
         return math.nan
@@ -249,19 +241,19 @@ def normal_depth(case: "Case", q: float, angle: float) -> float:
     return 0.5 * (low + high)
 
 
-def enters_fast(case: "Case", q: float) -> bool:
+def enters_fast(case: Case, q: float) -> bool:
     """Whether a discharge [m2/s] enters upstream at its normal depth: supercritical, and a cell deep."""
     first = reaches(case, q)[0]
     return first.froude > 1.0 and first.normal > THINNEST * cell_of(case)
 
 
-def inlet_tilt(case: "Case") -> float:
+def inlet_tilt(case: Case) -> float:
     """Angle of the bottom at the upper end to the x axis, positive where it rises [rad]."""
     (x, z), (x_next, z_next) = bottom_points(case)[:2]
     return math.atan2(z_next - z, x_next - x)
 
 
-def inlet_depth(case: "Case") -> float | None:
+def inlet_depth(case: Case) -> float | None:
     """Depth of the water that enters, along z over a bed there [m]; None where it is that of the row."""
     reach, end = reach_of(case), _row(case).upstream
     if reach is None:
@@ -269,7 +261,7 @@ def inlet_depth(case: "Case") -> float | None:
     return reach.depth / math.cos(inlet_tilt(case)) if reach_froude(case) > 1.0 else None
 
 
-def reach_froude(case: "Case") -> float:
+def reach_froude(case: Case) -> float:
     """Froude number of the mean flow of the feeder reach over its bed [-]; nan without one."""
     reach = reach_of(case)
     if reach is None:
@@ -277,7 +269,7 @@ def reach_froude(case: "Case") -> float:
     return reach.discharge / math.sqrt(case.motion.gravity * math.cos(reach.slope) * reach.depth**3)
 
 
-def deepest(case: "Case", plan: RowPlan) -> float:
+def deepest(case: Case, plan: RowPlan) -> float:
     """Largest depth to be expected [m]: at the start, of flow on the bed, behind dams, below levels."""
     keys, q = _row(case), peak_discharge(case)
     critical, bed = critical_depth(case, q), bed_over(case, plan.x)
@@ -286,7 +278,7 @@ def deepest(case: "Case", plan: RowPlan) -> float:
         on_it = (plan.x >= one.begin) & (plan.x <= one.end)
         found.append(one.normal + float(bed[on_it].max(initial=0.0)))
     over = 1.5 * critical if critical > 0.0 else 0.0
-    tilt = math.tan(slope(case))
+    tilt = math.tan(slope(case.motion))
     for dam in keys.dams:
         if dam.concentration is None:
             crest = crest_of(plan, dam)
@@ -302,13 +294,13 @@ def deepest(case: "Case", plan: RowPlan) -> float:
     return max((one for one in found if one > 0.0), default=0.0)
 
 
-def highest_water(case: "Case", plan: RowPlan) -> float:
+def highest_water(case: Case, plan: RowPlan) -> float:
     """Depth that the water may reach in a run [m]: `deepest`, backwater, bores, and closed basins."""
     keys, wet, q = _row(case), case.water, peak_discharge(case)
     found = deepest(case, plan)
     if wet is None or keys.upstream is None or keys.downstream is None:
         return found
-    bed, tilt, end = bed_over(case, plan.x), math.tan(slope(case)), keys.downstream
+    bed, tilt, end = bed_over(case, plan.x), math.tan(slope(case.motion)), keys.downstream
     rigid = plan.bottom + bed
     for dam in keys.dams:
         first, last = dam_span(plan, dam)
@@ -318,7 +310,7 @@ def highest_water(case: "Case", plan: RowPlan) -> float:
     volume = float(np.maximum(plan.start - rigid, 0.0).sum()) * plan.dx
     if q > 0.0:
         below = max(levels_of(case, end), default=-math.inf) - tilt * float(plan.x[-1])
-        rough = 0.0 if column_keys(case).bed == "smooth" else wet.roughness or reference_diameter(case)
+        rough = 0.0 if case.column.bed == "smooth" else wet.roughness or reference_diameter(case)
         held = backwater(
             up, plan.dx, q, below, critical_depth(case, q), case.motion.gravity, rough, wet.viscosity
         )
@@ -332,7 +324,7 @@ def highest_water(case: "Case", plan: RowPlan) -> float:
     return found
 
 
-def jumping(case: "Case", q: float) -> list[Reach]:
+def jumping(case: Case, q: float) -> list[Reach]:
     """Reaches where a discharge [m2/s] is supercritical and has subcritical water somewhere below it."""
     keys, found = _row(case), reaches(case, q)
     held = keys.downstream is not None and keys.downstream.end in ("wall", "level")
@@ -362,7 +354,7 @@ def dam_span(plan: RowPlan, dam: RowDamSection) -> tuple[int, int]:
     return (int(inside_it[0]), int(inside_it[-1]) + 1) if len(inside_it) else (0, 0)
 
 
-def fastest(case: "Case", plan: RowPlan) -> float:
+def fastest(case: Case, plan: RowPlan) -> float:
     """Speed of water and long waves that the case lets expect [m/s], for the time step."""
     q, g = peak_discharge(case), case.motion.gravity
     flows = [one.normal for one in reaches(case, q) if one.normal > 0.0]
@@ -372,7 +364,7 @@ def fastest(case: "Case", plan: RowPlan) -> float:
     return max([2.0 * wave, *(q / one + math.sqrt(g * one) for one in flows)])
 
 
-def water_step(case: "Case") -> float:
+def water_step(case: Case) -> float:
     """Time step of a row without grains [s]: an even part of record.frames within the Courant number."""
     plan = row_plan(case)
     longest = COURANT * plan.dx / fastest(case, plan) if fastest(case, plan) > 0.0 else math.inf
@@ -380,7 +372,7 @@ def water_step(case: "Case") -> float:
     return frames / max(math.ceil(frames / longest - 1e-9), 1)
 
 
-def _row(case: "Case") -> RowSection:
-    keys = row_keys(case)
+def _row(case: Case) -> RowSection:
+    keys = case.row
     assert keys is not None
     return keys

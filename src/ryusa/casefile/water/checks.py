@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.table import lightest_in_file
 from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.case import Case
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import mass
-from ryusa.casefile.materials import density
+from ryusa.casefile.grains.values import mass
+from ryusa.casefile.materials.values import density
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import KEY as SHAPE
@@ -19,12 +20,8 @@ from ryusa.laws import drag
 from ryusa.laws.families import Profile
 from ryusa.model.column import STIFF
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
-
-def check_water(case: "Case") -> Iterator[CaseError]:
+def check_water(case: Case) -> Iterator[CaseError]:
     """Find keys of the water that are missing or contradict each other."""
     water = case.water
     if water is None:
@@ -45,9 +42,9 @@ def check_water(case: "Case") -> Iterator[CaseError]:
         )
     if water.above != "continue" and water.depth is None and water.profile != "column":
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
-    if "drag_of_form" in water.model_fields_set and not has_clumps(case):
+    if "drag_of_form" in water.model_fields_set and not has_clumps(case.grains):
         yield CaseError("water.drag_of_form", water.drag_of_form, f"has no effect without clumps ({SHAPE})")
-    if water.torque != "none" and not may_rotate(case):
+    if water.torque != "none" and not may_rotate(case.motion, case.timeline):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
     yield from _that_floats(case, water.density)
     if water.depth is not None and not stream(case) and water.depth < (d := reference_diameter(case)):
@@ -57,7 +54,7 @@ def check_water(case: "Case") -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _that_floats(case: "Case", of_water: float) -> Iterator[CaseError]:
+def _that_floats(case: Case, of_water: float) -> Iterator[CaseError]:
     """Find grains lighter than the water that nobody asked for, or the word for them where all sink."""
     own = {"grains.density": case.grains.density}
     own |= {f"materials.{name}.density": density(case, name) for name in case.materials}
@@ -79,7 +76,7 @@ def _that_floats(case: "Case", of_water: float) -> Iterator[CaseError]:
         yield CaseError("grains.buoyant", True, "has no effect: no grain is lighter than the water")
 
 
-def check_drag_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
+def check_drag_step(case: Case, derived: Derived) -> Iterator[CaseError]:
     """Find a time step too long for the drag on the smallest grain, alone and at its settling velocity.
 
     Drag is explicit: with a step above one relaxation time the relative velocity changes its sign, above two

@@ -1,13 +1,14 @@
 """Rows of `ryusa check` about the water: friction velocity, Reynolds numbers, settling velocity."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import DropSection
 from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import water_over
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.shape import shapes_of
@@ -16,16 +17,12 @@ from ryusa.casefile.water.values import terminal_velocity
 from ryusa.laws import drag, torque, water
 from ryusa.laws.nonspherical import terminal_velocity_corey
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
 ROUND, NATURAL = 6.0, 3.5  # roundness on the scale of Powers
 LEAST_COREY = 0.2  # below, the fit of Dietrich does not hold
 APART = 0.1  # relative difference between two speeds that is worth a note
 
 
-def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow]:
+def water_rows(case: Case, derived: Derived, origin: str) -> list[ExplainRow]:
     """Friction velocity (and its `origin`), roughness, settling velocity; none in a dry case."""
     wet = case.water
     if wet is None:
@@ -43,7 +40,7 @@ def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow
     return [*rows, *_of_clumps(case, derived, wet)]
 
 
-def _of_natural_sand(case: "Case", derived: "Derived", wet: WaterSection, settling: float) -> ExplainRow:
+def _of_natural_sand(case: Case, derived: Derived, wet: WaterSection, settling: float) -> ExplainRow:
     """Settling velocity of natural sand of the mean diameter, beside that of the grains of the case."""
     ratio = case.grains.density / wet.density - 1.0
     sand = drag.terminal_velocity_ferguson_church(ratio, derived.g, derived.d, wet.viscosity, 18.0, 1.0)
@@ -56,7 +53,7 @@ def _of_natural_sand(case: "Case", derived: "Derived", wet: WaterSection, settli
     return number("water", "settling velocity of natural sand", sand, "m/s", origin, far)
 
 
-def _of_clumps(case: "Case", derived: "Derived", wet: WaterSection) -> list[ExplainRow]:
+def _of_clumps(case: Case, derived: Derived, wet: WaterSection) -> list[ExplainRow]:
     """Settling velocity of each shape, with that of natural grains of its axes."""
     rows, ratio = list[ExplainRow](), case.grains.density / wet.density - 1.0
     for one in shapes_of(case):
@@ -79,11 +76,11 @@ def _of_clumps(case: "Case", derived: "Derived", wet: WaterSection) -> list[Expl
     return rows
 
 
-def _shear(case: "Case", derived: "Derived", wet: WaterSection, origin: str) -> list[ExplainRow]:
+def _shear(case: Case, derived: Derived, wet: WaterSection, origin: str) -> list[ExplainRow]:
     rows = [number("water", "u_star", derived.u_star, "m/s", origin)]
     if not math.isnan(derived.tau_star):
         rows.append(number("water", "tau_star", derived.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
-    depth, tilt = water_over(case), slope_at_last(case)
+    depth, tilt = water_over(case), slope_at_last(case.motion, case.timeline)
     if depth > 0.0 and tilt > 0.0:
         implied = water.u_star_from_slope(depth, tilt, derived.g)
         differs: Flag = "note" if abs(implied / derived.u_star - 1.0) > APART else ""
@@ -95,7 +92,7 @@ def _shear(case: "Case", derived: "Derived", wet: WaterSection, origin: str) -> 
     return rows
 
 
-def rotation_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def rotation_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Reynolds number of the fastest rotation at the start, where the water exerts a torque."""
     wet = case.water
     if wet is None or wet.torque == "none":

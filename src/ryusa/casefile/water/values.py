@@ -1,22 +1,19 @@
 """What the water of a case does: friction velocity, speed over height, drag and settling velocity."""
 
 import math
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import water_over
-from ryusa.casefile.grains import mass
+from ryusa.casefile.facts import Derived
+from ryusa.casefile.grains.values import mass
 from ryusa.laws import drag, hindrance, water
 from ryusa.laws._family import evaluate
 from ryusa.laws.families import Drag, DragOfForm, Profile
 from ryusa.model.clump import Clump, drag_form
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
 
-
-def u_star_given(case: "Case") -> float:
+def u_star_given(case: Case) -> float:
     """Friction velocity at water.zero given by water.tau_star or water.u_star [m/s]; nan without either."""
     wet = case.water
     if wet is None:
@@ -27,7 +24,7 @@ def u_star_given(case: "Case") -> float:
     return math.nan if wet.u_star is None else wet.u_star
 
 
-def water_speed(case: "Case", derived: "Derived", z: float) -> float:
+def water_speed(case: Case, derived: Derived, z: float) -> float:
     """Speed of the water [m/s] at a height z above the zero of its profile [m]; 0 in a dry case."""
     wet = case.water
     if wet is None:
@@ -44,7 +41,7 @@ def water_speed(case: "Case", derived: "Derived", z: float) -> float:
     )  # fmt: skip
 
 
-def _steady_speed(case: "Case", derived: "Derived", z: float) -> float:
+def _steady_speed(case: Case, derived: Derived, z: float) -> float:
     """Speed of a column in steady flow at height z above its bed [m/s], by its log law; 0 in still water."""
     wet, u_star = case.water, derived.u_star
     assert wet is not None
@@ -56,7 +53,7 @@ def _steady_speed(case: "Case", derived: "Derived", z: float) -> float:
     return water.log_law_rough(z, u_star, derived.k_rough)
 
 
-def hindrance_exponent(case: "Case") -> float:
+def hindrance_exponent(case: Case) -> float:
     """Exponent of the hindrance [-]: the one given, or Rowe's n at the settling velocity of one grain."""
     wet = case.water
     assert wet is not None
@@ -68,7 +65,7 @@ def hindrance_exponent(case: "Case") -> float:
     return hindrance.exponent_rowe(drag.reynolds(settling, sizes(case)[0], wet.viscosity))
 
 
-def drag_coefficient(case: "Case", re: float, form: Clump | None = None) -> float:
+def drag_coefficient(case: Case, re: float, form: Clump | None = None) -> float:
     """C_D of a case at a grain Reynolds number [-], of a sphere or of a clump."""
     wet = case.water
     assert wet is not None
@@ -81,7 +78,7 @@ def drag_coefficient(case: "Case", re: float, form: Clump | None = None) -> floa
     return evaluate(of_form, re=re, stokes=stokes, newton=newton, sphericity=sphericity)
 
 
-def terminal_velocity(case: "Case", form: Clump | None = None) -> float:
+def terminal_velocity(case: Case, form: Clump | None = None) -> float:
     """Settling velocity of the mean grain [m/s]; inf without drag, nan for a grain that floats.
 
     Of a sphere, or of a clump of the same volume.

@@ -1,20 +1,16 @@
 """What `ryusa check` says of materials and their contacts."""
 
-from typing import TYPE_CHECKING
-
+from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness
-from ryusa.casefile.material_sizes import size_rows
-from ryusa.casefile.materials import GRAINS, case_of_pair, density, meeting
+from ryusa.casefile.materials.sizes import size_rows
+from ryusa.casefile.materials.values import GRAINS, case_of_pair, density, meeting
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.casefile.section import given
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
 _ADHESION_UNITS = {"pull_off_force": "N", "work_of_adhesion": "J/m2", "adhesion_density": "J/m3"}
 
 
-def material_rows(case: "Case") -> list[ExplainRow]:
+def material_rows(case: Case) -> list[ExplainRow]:
     """Contacts of each two materials that meet."""
     rows: list[ExplainRow] = []
     for name in case.materials:
@@ -35,12 +31,12 @@ def material_rows(case: "Case") -> list[ExplainRow]:
         origin = "[contact]" if a == b == GRAINS else origin
         if {a, b} in entries and a != b:
             origin = f"pairs.{entries.index({a, b})}"
-        values = f"mu {friction(one):.4g}, e {one.contact.restitution:.4g}"
+        values = f"mu {friction(one.contact):.4g}, e {one.contact.restitution:.4g}"
         if case.rolling.model != "none":
             values += f", rolling {one.rolling.coefficient:.4g}"
-        for key in adhesion(case).takes:
+        for key in adhesion(case.contact).takes:
             values += f", {key} {getattr(one.contact, key):.4g} {_ADHESION_UNITS[key]}"
-        if is_hertz(case):
+        if is_hertz(case.contact):
             e, nu = one.contact.youngs_modulus, one.contact.poisson_ratio
             values += f", E {e:.4g} Pa, nu {nu:.3g} if both were alike"
         else:

@@ -1,25 +1,19 @@
-"""Meshes of [[walls]]: read from their files, scaled and placed, and what `ryusa check` says of them."""
+"""Where [[walls]] are: meshes read from their files, scaled and placed, and the box round any wall."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.files import contents, inside
-from ryusa.casefile.rows import ExplainRow, count
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 from ryusa.laws.walls import turned_about
 from ryusa.model.arrays import Floats
 from ryusa.model.welding import first_of_each, flipped_sides, rims, welded
 from ryusa.units import quantity
-
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-    from ryusa.casefile.walls import WallSection
 
 _FLAT = 1e-12  # of the square of its longest side: a triangle of less area has none
 _FARTHEST = 1e12  # [m]
@@ -55,7 +49,7 @@ class Mesh:
         return flipped_sides(welded(self.corners))
 
 
-def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
+def mesh_of(folder: Path, wall: WallSection, key: str) -> Mesh:
     """Read the mesh of a wall, in SI and in its place; `key` is that of the wall.
 
     Raises
@@ -63,7 +57,7 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     CaseError : no such file, not a mesh, or an unknown unit.
     """
     assert wall.file is not None
-    path = inside(case, f"{key}.file", wall.file)
+    path = inside(folder, f"{key}.file", wall.file)
     try:
         unit = quantity(f"1 {wall.unit}", "m")
     except ValueError as error:
@@ -73,7 +67,7 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     if wall.turn_axis is not None and wall.turn_angle is not None:
         turn = (wall.turn_axis, wall.turn_angle)
     placed = partial(_placed, unit * wall.scale, turn, wall.at or (0.0, 0.0, 0.0))
-    return contents(case, f"{key}.file", wall.file, path, placed)
+    return contents(folder, f"{key}.file", wall.file, path, placed)
 
 
 @lru_cache(maxsize=8)
@@ -107,32 +101,20 @@ def _placed(
     return Mesh(corners, low, high, int(flat.sum()), doubled)
 
 
-def mesh_rows(case: "Case", derived: "Derived", wall: "WallSection", key: str) -> list[ExplainRow]:
-    """Triangles of a mesh, what was left out, and where it is open."""
-    mesh = mesh_of(case, wall, key)
-    found = [count("walls", f"{wall.name}: triangles", len(mesh.corners), f"{wall.file}, in {wall.unit}")]
-    if mesh.empty:
-        about = "triangles of no area in the file; they are left out"
-        found.append(count("walls", f"{wall.name}: left out", mesh.empty, about, "note"))
-    if mesh.doubled:
-        about = "triangles with the corners of another one in the file; each is taken once"
-        found.append(count("walls", f"{wall.name}: doubled", mesh.doubled, about, "note"))
-    single, wide, several = mesh.rims
-    if single:
-        where = "1 rim" if len(wide) == 1 else f"{len(wide)} rims"
-        widest = f"{100.0 * float(wide.max(initial=0.0)):.3g} cm across"
-        about = (
-            f"sides that one triangle has alone, in {where}, the widest {widest}: the mesh is a sheet, or "
-            f"has holes that grains may pass; the smallest grain is {100.0 * derived.d_min:.3g} cm"
-        )
-        found.append(count("walls", f"{wall.name}: open sides", single, about, "note"))
-    if several:
-        about = "sides that more than two triangles share: corners there are not smoothed"
-        found.append(count("walls", f"{wall.name}: shared sides", several, about, "note"))
-    if mesh.flipped_sides:
-        about = (
-            "sides at which one of two triangles is flipped: that plays no part, grains touch both sides of "
-            "a triangle and no force depends on the order of its corners"
-        )
-        found.append(count("walls", f"{wall.name}: flipped sides", mesh.flipped_sides, about))
-    return found
+def box_of(folder: Path, wall: WallSection, key: str) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of the box round a wall in its first place [m], shape (3,) each."""
+    if wall.shape == "mesh":
+        mesh = mesh_of(folder, wall, key)
+        return mesh.low, mesh.high
+    at = np.array(wall.at or (0.0, 0.0, 0.0))
+    if wall.sides is not None:
+        one, other = (np.array(side) for side in wall.sides)
+        up = np.cross(one, other)
+        up *= (wall.height or 0.0) / np.linalg.norm(up)
+        ends = at + np.array([a * one + b * other + c * up for a, b, c in np.ndindex(2, 2, 2)])
+        return ends.min(axis=0), ends.max(axis=0)
+    along = np.array(wall.axis or wall.normal or (0.0, 0.0, 1.0))
+    n = along / np.linalg.norm(along)
+    across = (wall.radius or 0.0) * np.sqrt(np.maximum(1.0 - n**2, 0.0))
+    end = at + along if wall.axis is not None else at
+    return np.minimum(at, end) - across, np.maximum(at, end) + across

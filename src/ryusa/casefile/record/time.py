@@ -1,23 +1,17 @@
 """[time]: the time step, and what limits it."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Any
 
-from pydantic import Field
-
+from ryusa.casefile.case import Case
+from ryusa.casefile.contact.schema import ContactSection
 from ryusa.casefile.contact.values import is_hertz, parting, timing
-from ryusa.casefile.quantities import Duration, Number
+from ryusa.casefile.facts import Derived
 from ryusa.casefile.rows import ExplainRow, number
-from ryusa.casefile.section import Section
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.laws.families import ContactTiming
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
-    from ryusa.casefile.derive import Derived
-
-RIVALS = (("steps_per_contact", "step"),)
 STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
 STEPS_LOSSLESS = 16.0  # with exact timing at restitution 1, where nothing takes what steps give (design/0014)
 STEPS_OF_HERTZ = (
@@ -31,18 +25,7 @@ FEWEST_STEPS = 10.0  # per contact that begins at steps, below which the restitu
 CLOSE = 0.5  # fraction of the largest stable step beyond which grains in several contacts may be unstable
 
 
-class TimeSection(Section):
-    """The time step."""
-
-    steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
-    """Number of steps in the shortest contact that can occur. When no step is given, 10 with contact.timing
-    "exact" (16 where the restitution is 1), 50 with "at steps", and 25 of elastic spheres, or more where a
-    tangential oscillation or a film of water needs them."""
-    step: Duration | None = None
-    """Time step dt, instead of steps_per_contact."""
-
-
-def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
+def check_time(case: Case, derived: Derived, data: dict[str, Any]) -> Iterator[CaseError]:
     """Find a time step beyond the stability limit of a contact, too coarse or needlessly fine."""
     written = data.get("time", {})
     steps = case.time.steps_per_contact
@@ -51,13 +34,13 @@ def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterat
             "time.steps_per_contact",
             steps,
             f"must be at least {FEWEST_STEPS:g} with contact.law '{case.contact.law}'"
-            if is_hertz(case)
+            if is_hertz(case.contact)
             else f"must be at least {FEWEST_STEPS:g} with contact.timing '{timing(case).word}'; "
             f"'{ContactTiming.EXACT.word}' allows {COARSEST:g}",
         )
     if derived.dt > derived.step_limit:
         key = "steps_per_contact" if case.time.step is None else "step"
-        yield CaseError(f"time.{key}", written.get(key), _unstable(case, derived, key))
+        yield CaseError(f"time.{key}", written.get(key), _unstable(case.contact, derived, key))
     if case.time.step is None:
         return
     t_col, steps = derived.shortest, derived.steps_per_contact
@@ -75,14 +58,14 @@ def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterat
         )
 
 
-def _exact(case: "Case") -> bool:
+def _exact(case: Case) -> bool:
     """Whether contacts begin and end within steps."""
     return timing(case) is ContactTiming.EXACT
 
 
-def steps_by_default(case: "Case") -> float:
+def steps_by_default(case: Case) -> float:
     """Steps in the shortest contact when the case gives no step, as far as contacts decide."""
-    return steps_of_law(is_hertz(case), timing(case), case.contact.restitution == 1.0)
+    return steps_of_law(is_hertz(case.contact), timing(case), case.contact.restitution == 1.0)
 
 
 def steps_of_law(hertz: bool, when: ContactTiming, lossless: bool) -> float:
@@ -92,11 +75,11 @@ def steps_of_law(hertz: bool, when: ContactTiming, lossless: bool) -> float:
     return STEPS_LOSSLESS if lossless and when == ContactTiming.EXACT else STEPS_PER_CONTACT[when]
 
 
-def _unstable(case: "Case", derived: "Derived", key: str) -> str:
+def _unstable(contact: ContactSection, derived: Derived, key: str) -> str:
     """Which motion is unstable, and what makes it stable."""
     tangential = derived.step_limit_shear == derived.step_limit
     which, softer = ("tangential", "contact.shear_ratio") if tangential else ("normal", "contact.stiffness")
-    softer = "contact.youngs_modulus" if is_hertz(case) else softer
+    softer = "contact.youngs_modulus" if is_hertz(contact) else softer
     shorter = "a larger time.steps_per_contact" if key == "steps_per_contact" else "a smaller time.step"
     return (
         f"dt = {derived.dt:.3g} s is above {derived.step_limit:.3g} s, the largest step at which the {which} "
@@ -105,23 +88,23 @@ def _unstable(case: "Case", derived: "Derived", key: str) -> str:
     )
 
 
-def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+def time_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Durations of contacts and the time step."""
     rows: list[ExplainRow] = []
     undamped = "Eq. (8) with added mass, without damping"
-    if is_hertz(case):
+    if is_hertz(case.contact):
         undamped = "Hertz, at the expected impact speed, with added mass, without damping"
     for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
         rows += [
             number("time", f"collision time {name}", pair.t_undamped, "s", undamped),
-            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {parting(case)}"),
+            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {parting(case.contact)}"),
         ]
     partners = "two free grains" if derived.meet else "a grain on a fixed one"
-    if is_hertz(case) and not derived.meet:
+    if is_hertz(case.contact) and not derived.meet:
         partners = "a grain on a wall"
     size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
     partners += size if derived.d_max > derived.d_min else ""
-    partners += ", pushed where a clump gives way most" if has_clumps(case) else ""
+    partners += ", pushed where a clump gives way most" if has_clumps(case.grains) else ""
     few = derived.steps_per_contact < FEWEST_STEPS and not _exact(case)
     ratio = "shortest contact over dt"
     ratio += "; the paper asks for at least ten: with fewer the restitution is not reached" if few else ""

@@ -1,28 +1,25 @@
 """Sizes of materials: what is wrong with them, and what `ryusa check` says of them."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.values import drawn_range
+from ryusa.casefile.case import Case
 from ryusa.casefile.grading import BUILDERS, check_points, grading_of
-from ryusa.casefile.grains import has_own_sizes, sized_as
-from ryusa.casefile.materials import MaterialSection
+from ryusa.casefile.grains.values import has_own_sizes, sized_as
+from ryusa.casefile.materials.schema import MaterialSection
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
 from ryusa.model.grading import SHARES
 
-if TYPE_CHECKING:
-    from ryusa.casefile.case import Case
 
-
-def check_sizes(case: "Case") -> Iterator[CaseError]:
+def check_sizes(case: Case) -> Iterator[CaseError]:
     """Find sizes of materials that contradict each other, or that no builder draws, and bad curves."""
     for name, one in case.materials.items():
         yield from _sizes(case, name, one)
 
 
-def _sizes(case: "Case", name: str, one: MaterialSection) -> Iterator[CaseError]:
+def _sizes(case: Case, name: str, one: MaterialSection) -> Iterator[CaseError]:
     key = f"materials.{name}"
     if one.sieve_curve is not None:
         for other in ("diameter", "spread"):
@@ -31,7 +28,11 @@ def _sizes(case: "Case", name: str, one: MaterialSection) -> Iterator[CaseError]
                     f"{key}.{other}", None, f"excludes {key}.sieve_curve; give only one of the two"
                 )
         yield from check_points(f"{key}.sieve_curve", one.sieve_curve)
-    if has_own_sizes(case, name) and name in case.grains.mixture and case.build.kind not in BUILDERS:
+    if (
+        has_own_sizes(case.materials, name)
+        and name in case.grains.mixture
+        and case.build.kind not in BUILDERS
+    ):
         yield CaseError(
             f"grains.mixture.{name}", None,
             f"is of a size of its own, which builder '{case.build.kind}' does not draw; "
@@ -39,9 +40,9 @@ def _sizes(case: "Case", name: str, one: MaterialSection) -> Iterator[CaseError]
         )  # fmt: skip
 
 
-def size_rows(case: "Case", name: str) -> list[ExplainRow]:
+def size_rows(case: Case, name: str) -> list[ExplainRow]:
     """Sizes of a material that has its own."""
-    if not has_own_sizes(case, name):
+    if not has_own_sizes(case.materials, name):
         return []
     low, high = drawn_range(case, name)
     if low == high:

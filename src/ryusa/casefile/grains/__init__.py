@@ -1,0 +1,1 @@
+"""[grains] and [shapes]: keys, and what follows from them."""

@@ -1,0 +1,1 @@
+"""[materials.NAME] and [[pairs]]: keys, checks, values and rows."""

@@ -1,0 +1,1 @@
+"""[time], [stop], [[timeline]] and [record]: keys, checks, values and rows."""

@@ -1,0 +1,1 @@
+"""[[walls]] and [[planes]]: keys, checks, places and rows."""
