@@ -9,6 +9,7 @@ import numpy as np
 
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model.arrays import Floats
+from ryusa.model.flow import Field, Flow
 from ryusa.printed import ByShape
 
 NAN = float("nan")
@@ -24,7 +25,7 @@ class Top(IntEnum):
 
 
 @dataclass(frozen=True, repr=False)
-class Column(ByShape):
+class Column(Flow):
     """Fixed properties of a column of n equal cells, averaged along and across the bed."""
 
     z_low: float  # bottom [m]
@@ -94,11 +95,23 @@ class Column(ByShape):
         """What it is, in words."""
         return f"a column of {self.n} cells of water"
 
-    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the datasets of a frame, as a run folder holds them."""
-        cells = dict.fromkeys(("u", "w", "phi", "content"), (self.n,))  # [m/s], [m/s], [-], [m]
-        faces = dict.fromkeys(("tau", "nu_t"), (self.n + 1,))  # [Pa], [m2/s]
-        return {**cells, **faces, "z_surface": (), "gradient": ()}  # [m], [Pa/m]
+    @property
+    def places(self) -> dict[str, int]:
+        """Cells of the column, and the faces between and around them."""
+        return {"cell": self.n, "face": self.n + 1}
+
+    def fields(self) -> dict[str, Field]:
+        """What a run folder keeps of the water at a frame."""
+        return {
+            "u": Field("m/s", ("cell",)),  # speed along the bed
+            "w": Field("m/s", ("cell",)),  # and upwards
+            "phi": Field("-", ("cell",)),  # concentration of grains, fixed ones included
+            "content": Field("m", ("cell",)),  # water in a cell per area of bed
+            "tau": Field("Pa", ("face",)),  # shear stress of the water; the bed's is the first
+            "nu_t": Field("m2/s", ("face",)),  # eddy viscosity
+            "z_surface": Field("m"),  # height of the surface
+            "gradient": Field("Pa/m"),  # -dp/dx that drives the water in addition to gravity
+        }
 
     def first_surface(self, x: Floats) -> Floats:
         """Height of the surface at the start at places along x [m], same shape."""

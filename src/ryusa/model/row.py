@@ -14,6 +14,7 @@ from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
 from ryusa.model.course import Course
 from ryusa.model.eddies import Eddies
+from ryusa.model.flow import Field, Flow
 from ryusa.model.row_energy import N_ROW_TERM
 from ryusa.printed import ByShape
 
@@ -84,7 +85,7 @@ class RowDam:
 
 
 @dataclass(frozen=True, repr=False)
-class ColumnRow(ByShape):
+class ColumnRow(Flow):
     """Fixed properties of a row of n_segment segments; without ends it is periodic."""
 
     column: Column  # of each station, its heights measured from the bottom
@@ -151,14 +152,32 @@ class ColumnRow(ByShape):
         """Height of the surface at the start at places along x [m], same shape; -inf if not given."""
         return np.full(x.shape, -np.inf) if self.start is None else self.start[self.segment_at(x)]
 
-    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the datasets of a frame of this row, as a run folder holds them."""
-        segments, stations, n = self.n_segment, len(self.x_station), self.column.n
+    @property
+    def floor(self) -> Floats:
+        """Height of the bottom, or of the top of solid cells on it [m], shape (n_segment,)."""
+        return self.bottom if self.solid is None else self.bottom + self.solid * self.column.dz
+
+    @property
+    def places(self) -> dict[str, int]:
+        """Segments from upstream on, stations between them, cells and faces of each; terms of `RowTerm`."""
+        n = self.column.n
+        along = {"segment": self.n_segment, "station": len(self.x_station)}
+        return {**along, "cell": n, "face": n + 1, "term": N_ROW_TERM}
+
+    def fields(self) -> dict[str, Field]:
+        """What a run folder keeps of the water at a frame."""
         return {
-            "surface": (segments,), "volume": (segments,), "content": (segments, n), "phi": (segments, n),
-            "discharge": (stations,), "passed": (stations,), "tau": (stations,), "u": (stations, n),
-            "w": (stations, n), "energy": (N_ROW_TERM,),
-        }  # fmt: skip
+            "surface": Field("m", ("segment",)),  # its height; that of the bottom where it is dry
+            "volume": Field("m", ("segment",)),  # water per area
+            "content": Field("m", ("segment", "cell")),  # the part in each cell
+            "phi": Field("-", ("segment", "cell")),  # concentration of grains, fixed ones included
+            "discharge": Field("m2/s", ("station",)),  # what passed in the last step of the water, per width
+            "passed": Field("m2", ("station",)),  # what has passed since the start, per width
+            "tau": Field("Pa", ("station",)),  # shear stress of the water at the bottom
+            "u": Field("m/s", ("station", "cell")),  # speed along x
+            "w": Field("m/s", ("station", "cell")),  # and upwards
+            "energy": Field("J/m", ("term",)),  # energy account since the start, per width
+        }
 
     def state_shapes(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the arrays of a `RowState` of this row."""

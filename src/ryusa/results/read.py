@@ -23,7 +23,7 @@ from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
-from ryusa.results.lazy import Part
+from ryusa.results.lazy import Part, read_frames
 from ryusa.results.place import refuse_other
 from ryusa.results.presentation import (
     FilmFile,
@@ -37,9 +37,8 @@ from ryusa.results.presentation import (
     view_of,
     xarray_of,
 )
-from ryusa.results.row import RowFrames, read_row
 from ryusa.results.scene_file import read_scene
-from ryusa.results.water import WaterFrames, read_water
+from ryusa.results.water import WaterFrames
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -176,17 +175,21 @@ class Results:
         rows = [part.of_walls(name, shape) for part in self._parts if part.n_frame]
         return np.concatenate([np.zeros((0, *shape)), *rows])
 
-    @cached_property
+    @property
     def water(self) -> WaterFrames | None:
         """Profiles of the water at every frame; None if the run has no water column."""
-        column = self.scene.column
-        return None if column is None else read_water(self._parts, self.frames.t, column)
+        return None if self.scene.column is None else self._water
+
+    @property
+    def row(self) -> WaterFrames | None:
+        """Water of a row of columns at every frame; None if the run has none."""
+        return None if self.scene.row is None else self._water
 
     @cached_property
-    def row(self) -> RowFrames | None:
-        """Water of a row of columns at every frame; None if the run has none."""
-        row = self.scene.row
-        return None if row is None else read_row(self._parts, self.frames.t, row)
+    def _water(self) -> WaterFrames:
+        flow = self.scene.flow
+        assert flow is not None
+        return WaterFrames(flow, self.frames.t, **read_frames(self._parts, flow.GROUP, flow.frame_shapes()))
 
     @property
     def grains(self) -> Grains:

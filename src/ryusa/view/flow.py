@@ -11,7 +11,7 @@ from ryusa.laws.dispatch import profile_speed
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
 from ryusa.results import Results
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.view.encode import Blob
 
 POINTS = 60  # of a profile that is given by a formula
@@ -123,7 +123,7 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     return {"z": z.tolist(), "solved": False}
 
 
-def _mean_of_row(results: Results, row: RowFrames, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any]:
+def _mean_of_row(results: Results, row: WaterFrames, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any]:
     """The mean along a row of columns, for `flow_of`."""
     column, among = row.row.column, 1.0 - row.phi[frames]
     wet = (row.content[frames] / (among * column.dz)).mean(axis=1)
