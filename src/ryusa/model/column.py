@@ -1,7 +1,7 @@
 """The water column over a bed: its fixed properties, its state, and its momentum budget."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import ClassVar
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model.arrays import Floats
+from ryusa.model.eddies import Eddies
 from ryusa.model.flow import Field, Flow
 from ryusa.printed import ByShape
 
@@ -61,7 +62,8 @@ class Column(Flow):
     fluctuations: Fluctuations = Fluctuations.NONE
     seed: int = 0  # of the random walk
     # exchange with the grains
-    interval: int = 50  # largest coupling interval [steps]
+    # largest coupling interval [steps]
+    interval: int = 50  # pyright: ignore[reportIncompatibleMethodOverride] # read as the property is
     start: Start = Start.REST
     GROUP: ClassVar[str] = "water"  # of its datasets in a run folder
 
@@ -112,6 +114,23 @@ class Column(Flow):
             "z_surface": Field("m"),  # height of the surface
             "gradient": Field("Pa/m"),  # -dp/dx that drives the water in addition to gravity
         }
+
+    @property
+    def state(self) -> "type[CouplingState]":
+        """Kind of its snapshot."""
+        return CouplingState
+
+    def state_shapes(self, n_grain: int) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a snapshot by name, nested ones with slashes."""
+        cells = ("u", "w", "content", "shear", "du_dt", "dtau_dz")
+        shapes: dict[str, tuple[int, ...]] = {f"water/{name}": (self.n,) for name in cells}
+        shapes |= {f"water/{name}": (self.n + 1,) for name in ("tau", "nu_t")}
+        return shapes | {"z": (n_grain,), "force_z": (self.n,)} | Eddies.shapes(n_grain, "eddies")
+
+    def tilted(self, g_x: float, g_z: float) -> "Column":
+        """The same column with another gravity along the bed [m/s2]."""
+        del g_z
+        return replace(self, g_x=g_x)
 
     def first_surface(self, x: Floats) -> Floats:
         """Height of the surface at the start at places along x [m], same shape."""
@@ -192,6 +211,37 @@ class WaterState(ByShape):
             z_surface=column.z_surface,
             volume=float(content.sum()),
         )
+
+
+@dataclass(frozen=True, repr=False)
+class CouplingState(ByShape):
+    """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
+
+    Attributes
+    ----------
+    water : water since the last exchange.
+    z : heights of the free grains at the last exchange [m], for their volumes in the cells, shape (n_grain,).
+    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n,).
+    steps : steps of the engine in the present coupling interval.
+    due : step of the next exchange.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum of the water over its largest term so far [-].
+    eddies : present eddies of the grains; None without fluctuations.
+    """
+
+    water: WaterState
+    z: Floats
+    force_z: Floats
+    steps: int
+    due: int
+    exchanges: int
+    worst: float
+    eddies: Eddies | None = None
+
+    def fault(self, touched: int) -> str:
+        """Why this is no state of a column that so many grains touch; "" where it is one."""
+        del touched
+        return "a negative eddy viscosity" if (self.water.nu_t < 0.0).any() else ""
 
 
 @dataclass(frozen=True)

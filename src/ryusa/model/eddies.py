@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.model.arrays import Floats
 
@@ -21,4 +22,9 @@ class Eddies:
 
     r: Floats
     spent: Floats
-    count: np.ndarray
+    count: NDArray[np.int64]
+
+    @staticmethod
+    def shapes(n_grain: int, about: str) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays, their names behind `about` and a slash."""
+        return {f"{about}/r": (n_grain, 3), f"{about}/spent": (n_grain,), f"{about}/count": (n_grain,)}

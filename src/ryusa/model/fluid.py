@@ -5,8 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.model.arrays import Floats
-from ryusa.model.column import WaterState
-from ryusa.model.eddies import Eddies
 from ryusa.printed import ByShape
 
 # Columns of `FluidAtGrains.sampled`.
@@ -45,29 +43,3 @@ class FluidAtGrains(ByShape):
         sampled = np.zeros((n_grain, N_SAMPLED))
         sampled[:, SUBMERGED] = 1.0
         return FluidAtGrains(sampled, np.zeros((n_grain, N_IMPULSE)))
-
-
-@dataclass(frozen=True, repr=False)
-class CouplingState(ByShape):
-    """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
-
-    Attributes
-    ----------
-    water : water since the last exchange.
-    z : heights of the free grains at the last exchange [m], for their volumes in the cells, shape (n_grain,).
-    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n,).
-    steps : steps of the engine in the present coupling interval.
-    due : step of the next exchange.
-    exchanges : number of exchanges so far.
-    worst : largest residual of the momentum of the water over its largest term so far [-].
-    eddies : present eddies of the grains; None without fluctuations.
-    """
-
-    water: WaterState
-    z: Floats
-    force_z: Floats
-    steps: int
-    due: int
-    exchanges: int
-    worst: float
-    eddies: Eddies | None = None

@@ -179,16 +179,25 @@ class ColumnRow(Flow):
             "energy": Field("J/m", ("term",)),  # energy account since the start, per width
         }
 
-    def state_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a `RowState` of this row."""
+    @property
+    def state(self) -> "type[RowCouplingState]":
+        """Kind of its snapshot."""
+        return RowCouplingState
+
+    def state_shapes(self, n_grain: int) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a snapshot by name, nested ones with slashes."""
         n, stations = self.column.n, len(self.x_station)
         segments = self.n_segment + (0 if self.periodic else 2)
-        return {
+        of_water = {
             "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
             "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
             "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
             "energy": (N_ROW_TERM,),
         }  # fmt: skip
+        of_grains = {"x": (n_grain, 3), "w": (segments, n), "force_z": (segments, n), "u": (stations, n)}
+        shapes = {f"water/{name}": one for name, one in of_water.items()} | {"passing": (stations,)}
+        shapes |= {f"grains/{name}": one for name, one in of_grains.items()}
+        return shapes | Eddies.shapes(n_grain, "grains/eddies")
 
     def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
         """The same row with another gravity along and normal to the x axis [m/s2]."""
@@ -360,3 +369,10 @@ class RowCouplingState(ByShape):
     worst: float
     passing: Floats
     grains: RowGrainState | None = None
+
+    def fault(self, touched: int) -> str:
+        """Why this is no state of a row that so many grains touch; "" where it is one."""
+        water = self.water
+        if min(water.volume.min(), water.content.min(), water.wet.min()) < 0.0:
+            return "a negative amount of water"
+        return "a row of water without its grains" if touched and self.grains is None else ""

@@ -42,7 +42,6 @@ class Coupling:
     ----------
     scene : the scene; its water has the profile COLUMN.
     column : cells, boundaries, driver, closures.
-    longest : largest number of engine steps in an interval.
     steps : steps in the present interval; 1 in the first, where no drag is known yet.
     phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
     sampled : water at the grains as given last, columns of `model.fluid`.
@@ -56,7 +55,6 @@ class Coupling:
 
     scene: Scene
     column: Column
-    longest: int
     steps: int
     phi: Floats
     sampled: Floats
@@ -74,19 +72,20 @@ class Coupling:
 
     @staticmethod
     def begin(
-        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0,
-        ids: Ints | None = None, processes: SharingProcesses | None = None,
+        scene: Scene, column: Column, x: Floats, step: int = 0, threads: int = 1,
+        state: WaterState | None = None, ids: Ints | None = None, processes: SharingProcesses | None = None,
     ) -> "Coupling":  # fmt: skip
         """Cut the grains at x [m], and fill the column with its initial state or with a given one.
 
         Raises
         ------
-        ValueError : the column is not valid, or `longest` is less than 1.
+        ValueError : the column is not valid, or its interval is less than a step.
         WaterError : no steady initial state was found.
         """
+        del threads  # one column has no loops that are worth it
         faults = column.refuses()
-        if faults or longest < 1:
-            raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
+        if faults or column.interval < 1:
+            raise ValueError("; ".join(faults) or f"an interval of {column.interval} steps: at least 1")
         x, _ = _with_those_away(scene, column, x, x)
         phi_bed = concentration_of_bed(scene, column)
         surface = column.z_surface if state is None else state.z_surface
@@ -105,7 +104,7 @@ class Coupling:
         rows, faces, out = profiles_of(now)
         n = len(x)
         coupling = Coupling(
-            scene, column, longest, 1, phi, np.zeros((n, N_SAMPLED)), step + 1, 0, 0.0, arrays, rows, faces,
+            scene, column, 1, phi, np.zeros((n, N_SAMPLED)), step + 1, 0, 0.0, arrays, rows, faces,
             out, (now.volume, now.t, now.step), ids=ids, processes=processes,
         )  # fmt: skip
         if column.fluctuations is Fluctuations.RANDOM_WALK:
@@ -115,7 +114,7 @@ class Coupling:
 
     @staticmethod
     def resume(
-        scene: Scene, column: Column, longest: int, found: CouplingState, sampled: Floats,
+        scene: Scene, column: Column, found: CouplingState, sampled: Floats | None = None, threads: int = 1,
         ids: Ints | None = None, processes: SharingProcesses | None = None,
     ) -> "Coupling":  # fmt: skip
         """Go on from a snapshot; `sampled` is the water at the grains here, columns of `model.fluid`.
@@ -130,9 +129,12 @@ class Coupling:
                 f"{column.n} cells and {scene.n_grain} grains"
             )
         here = slice(None) if ids is None else ids
+        sampled = np.zeros((0, N_SAMPLED)) if sampled is None else sampled
         x = np.zeros((len(sampled), 3))
         x[:, 2] = found.z[here]
-        coupling = Coupling.begin(scene, column, longest, x, found.water, ids=ids, processes=processes)
+        coupling = Coupling.begin(
+            scene, column, x, threads=threads, state=found.water, ids=ids, processes=processes
+        )
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
         coupling.sampled = np.array(sampled)  # one that may be written: read-only arrays would compile anew
@@ -262,7 +264,7 @@ class Coupling:
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, float(out[step.RESIDUAL]))
         fastest = float(out[step.FASTEST])
         refuse_unresolved(fastest, self.scene.dt, STIFF, *self._about[1:])
-        self.steps = steps_resolved(fastest, self.scene.dt, self.longest)
+        self.steps = steps_resolved(fastest, self.scene.dt, self.column.interval)
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR], self.ids)
@@ -295,7 +297,7 @@ class Coupling:
         The water in each cell is what it was, and so is its momentum. What entering grains displace moves on
         with the next exchange, as it does where grains move from cell to cell.
         """
-        other = Coupling.begin(self.scene, self.column, self.longest, x, self.state, step)
+        other = Coupling.begin(self.scene, self.column, x, step, state=self.state)
         other.exchanges, other.worst, other.eddies = self.exchanges, self.worst, self.eddies
         other._arrays.force_z[:] = self._arrays.force_z
         other.sampled = other._water_at_grains()

@@ -6,15 +6,15 @@ from typing import Any, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import CouplingState, RowCouplingState, Scene
+from ryusa.model import Scene
 from ryusa.model.arrays import Floats
+from ryusa.model.flow import Snapshot
 
 
 class Fluid(Protocol):
     """Water of a run that exchanges momentum with its grains once per interval of steps.
 
-    `running.water.started` makes its first state, and one that goes on from a snapshot. What it is made of
-    (cells, bottom, ends) is the `flow` of the scene.
+    Cells, bottom and ends are those of the `flow` of the scene; `water.kinds` has what moves in which.
 
     Attributes
     ----------
@@ -24,6 +24,31 @@ class Fluid(Protocol):
 
     due: int
     sampled: Floats
+
+    @staticmethod
+    def begin(scene: Scene, flow: Any, /, x: Floats, step: int = 0, threads: int = 1) -> "Fluid":
+        """Fill the flow of a scene with its first water.
+
+        Parameters
+        ----------
+        flow : of the scene; of the kind that this moves in.
+        x : centres of the grains [m], shape (n_grain, 3); nan for one that is away.
+        step : of the engine.
+        threads : share the loops over grains; the bits do not depend on them.
+
+        Raises
+        ------
+        ValueError : the flow is not valid.
+        WaterError : no first water was found.
+        """
+        ...
+
+    @staticmethod
+    def resume(
+        scene: Scene, flow: Any, found: Any, /, sampled: Floats | None = None, threads: int = 1
+    ) -> "Fluid":
+        """Go on from a snapshot of this kind, and the water at the grains with it; else as `begin`."""
+        ...
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
@@ -68,7 +93,7 @@ class Fluid(Protocol):
         """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
         ...
 
-    def snapshot(self, kept: Floats | None = None) -> CouplingState | RowCouplingState:
+    def snapshot(self, kept: Floats | None = None) -> Snapshot:
         """All that an exact resume needs, beside the water at the grains.
 
         Parameters
@@ -78,7 +103,7 @@ class Fluid(Protocol):
         ...
 
     def frame(self) -> Mapping[str, NDArray[Any]]:
-        """What a run folder keeps of it at a frame: the datasets of `scene.flow.frame_shapes()`."""
+        """What a run folder keeps of it at a frame: the fields of `scene.flow`."""
         ...
 
     def surface_at(self, x: Floats) -> Floats:
