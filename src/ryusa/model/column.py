@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -115,18 +115,6 @@ class Column(Flow):
             "gradient": Field("Pa/m"),  # -dp/dx that drives the water in addition to gravity
         }
 
-    @property
-    def state(self) -> "type[CouplingState]":
-        """Kind of its snapshot."""
-        return CouplingState
-
-    def state_shapes(self, n_grain: int) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a snapshot by name, nested ones with slashes."""
-        cells = ("u", "w", "content", "shear", "du_dt", "dtau_dz")
-        shapes: dict[str, tuple[int, ...]] = {f"water/{name}": (self.n,) for name in cells}
-        shapes |= {f"water/{name}": (self.n + 1,) for name in ("tau", "nu_t")}
-        return shapes | {"z": (n_grain,), "force_z": (self.n,)} | Eddies.shapes(n_grain, "eddies")
-
     def tilted(self, g_x: float, g_z: float) -> "Column":
         """The same column with another gravity along the bed [m/s2]."""
         del g_z
@@ -176,14 +164,14 @@ class WaterState(ByShape):
     It includes the values that the grains use during the next coupling interval, so that a resume is exact.
     """
 
-    u: Floats  # velocity along the bed [m/s], shape (n,)
-    w: Floats  # vertical velocity of the water from eps w + phi w_p = 0 [m/s], shape (n,)
-    content: Floats  # water per area of bed in each cell [m], shape (n,)
-    shear: Floats  # dU/dz at the cell centres [1/s], shape (n,)
-    du_dt: Floats  # acceleration of the water, DU/Dt [m/s2], shape (n,)
-    dtau_dz: Floats  # gradient of the shear stress of the water [N/m3], shape (n,)
-    tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the first is that at the bed
-    nu_t: Floats  # eddy viscosity at the faces [m2/s], shape (n + 1,)
+    u: Annotated[Floats, "cell"]  # velocity along the bed [m/s]
+    w: Annotated[Floats, "cell"]  # vertical velocity of the water from eps w + phi w_p = 0 [m/s]
+    content: Annotated[Floats, "cell"]  # water per area of bed in each cell [m]
+    shear: Annotated[Floats, "cell"]  # dU/dz at the cell centres [1/s]
+    du_dt: Annotated[Floats, "cell"]  # acceleration of the water, DU/Dt [m/s2]
+    dtau_dz: Annotated[Floats, "cell"]  # gradient of the shear stress of the water [N/m3]
+    tau: Annotated[Floats, "face"]  # shear stress of the water [Pa]; the first is that at the bed
+    nu_t: Annotated[Floats, "face"]  # eddy viscosity at the faces [m2/s]
     z_surface: float  # height of the surface [m]
     volume: float  # water per area of bed [m], constant with SurfaceRule.VOLUME
     gradient: float = 0.0  # -dp/dx of the driver [Pa/m]
@@ -230,8 +218,8 @@ class CouplingState(ByShape):
     """
 
     water: WaterState
-    z: Floats
-    force_z: Floats
+    z: Annotated[Floats, "grain"]
+    force_z: Annotated[Floats, "cell"]
     steps: int
     due: int
     exchanges: int

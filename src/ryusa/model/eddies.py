@@ -1,6 +1,7 @@
 """State of the random walk of the grains through turbulence."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +21,6 @@ class Eddies:
     count : number of eddies that the grain has left, the index of the present one, shape (n_grain,), int64.
     """
 
-    r: Floats
-    spent: Floats
-    count: NDArray[np.int64]
-
-    @staticmethod
-    def shapes(n_grain: int, about: str) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays, their names behind `about` and a slash."""
-        return {f"{about}/r": (n_grain, 3), f"{about}/spent": (n_grain,), f"{about}/count": (n_grain,)}
+    r: Annotated[Floats, "grain", 3]
+    spent: Annotated[Floats, "grain"]
+    count: Annotated[NDArray[np.int64], "grain"]

@@ -1,7 +1,7 @@
 """What the water of a run moves in, whatever its kind, and the fields that a run keeps of it."""
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple, Protocol, Self
+from typing import ClassVar, NamedTuple, Protocol, Self
 
 from ryusa.model.arrays import Floats
 from ryusa.printed import ByShape
@@ -17,7 +17,8 @@ class Field(NamedTuple):
 class Snapshot(Protocol):
     """State of the water between two exchanges: a dataclass of numbers, arrays and such dataclasses.
 
-    With the water at the grains (`model.fluid`) it is complete for a resume.
+    An array is annotated with its axes: names of `Flow.places`, "grain", or lengths. With the water at the
+    grains (`model.fluid`) it is complete for a resume.
     """
 
     @property
@@ -65,15 +66,6 @@ class Flow(ByShape):
 
     def tilted(self, g_x: float, g_z: float) -> Self:
         """The same with another gravity along and normal to the x axis [m/s2]."""
-        raise NotImplementedError
-
-    @property
-    def state(self) -> type[Any]:
-        """Kind of its `Snapshot`."""
-        raise NotImplementedError
-
-    def state_shapes(self, n_grain: int) -> Mapping[str, tuple[int, ...]]:
-        """Shapes of the arrays of a snapshot by name, nested ones with slashes."""
         raise NotImplementedError
 
     def frame_shapes(self) -> dict[str, tuple[int, ...]]:

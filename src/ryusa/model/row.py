@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,10 +159,13 @@ class ColumnRow(Flow):
 
     @property
     def places(self) -> dict[str, int]:
-        """Segments from upstream on, stations between them, cells and faces of each; terms of `RowTerm`."""
-        n = self.column.n
-        along = {"segment": self.n_segment, "station": len(self.x_station)}
-        return {**along, "cell": n, "face": n + 1, "term": N_ROW_TERM}
+        """Segments from upstream on, stations between them, cells and faces of each; terms of `RowTerm`.
+
+        Beyond each open end lies one segment that is filled as well.
+        """
+        n, segments = self.column.n, self.n_segment
+        along = {"segment": segments, "filled": segments + 2 * (not self.periodic)}
+        return {**along, "station": len(self.x_station), "cell": n, "face": n + 1, "term": N_ROW_TERM}
 
     def fields(self) -> dict[str, Field]:
         """What a run folder keeps of the water at a frame."""
@@ -178,26 +181,6 @@ class ColumnRow(Flow):
             "w": Field("m/s", ("station", "cell")),  # and upwards
             "energy": Field("J/m", ("term",)),  # energy account since the start, per width
         }
-
-    @property
-    def state(self) -> "type[RowCouplingState]":
-        """Kind of its snapshot."""
-        return RowCouplingState
-
-    def state_shapes(self, n_grain: int) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a snapshot by name, nested ones with slashes."""
-        n, stations = self.column.n, len(self.x_station)
-        segments = self.n_segment + (0 if self.periodic else 2)
-        of_water = {
-            "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
-            "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
-            "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
-            "energy": (N_ROW_TERM,),
-        }  # fmt: skip
-        of_grains = {"x": (n_grain, 3), "w": (segments, n), "force_z": (segments, n), "u": (stations, n)}
-        shapes = {f"water/{name}": one for name, one in of_water.items()} | {"passing": (stations,)}
-        shapes |= {f"grains/{name}": one for name, one in of_grains.items()}
-        return shapes | Eddies.shapes(n_grain, "grains/eddies")
 
     def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
         """The same row with another gravity along and normal to the x axis [m/s2]."""
@@ -311,17 +294,17 @@ class RowState(ByShape):
     last step at every station, as `momentum_balance` writes them.
     """
 
-    u: Floats  # speed along x at the stations [m/s], shape (n_station, n)
-    volume: Floats  # water per area of a segment [m], shape (n_all,)
-    content: Floats  # the part in each cell [m], shape (n_all, n)
-    wet: Floats  # wet thickness of each cell [m], shape (n_all, n)
-    surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_all,)
-    passed: Floats  # water that has passed each station since the start [m2], shape (n_station,)
-    profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
-    edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
-    budgets: Floats  # momentum budget, shape (n_station, N_OUT)
+    u: Annotated[Floats, "station", "cell"]  # speed along x at the stations [m/s]
+    volume: Annotated[Floats, "filled"]  # water per area of a segment [m]
+    content: Annotated[Floats, "filled", "cell"]  # the part in each cell [m]
+    wet: Annotated[Floats, "filled", "cell"]  # wet thickness of each cell [m]
+    surface: Annotated[Floats, "filled"]  # height of the surface above the bottom, plus z_low [m]
+    passed: Annotated[Floats, "station"]  # water that has passed each station since the start [m2]
+    profiles: Annotated[Floats, "station", 6, "cell"]  # u, w, content, shear, du_dt, dtau_dz
+    edges: Annotated[Floats, "station", 2, "face"]  # stress [Pa] and eddy viscosity [m2/s] at the faces
+    budgets: Annotated[Floats, "station", N_BUDGET]  # momentum budget
     # energy account since the start [J/m], indexed by RowTerm
-    energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
+    energy: Annotated[Floats, "term"] = field(default_factory=lambda: np.zeros(N_ROW_TERM))
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done
     courant: float = 0.0  # largest Courant number met [-]
@@ -340,10 +323,10 @@ class RowGrainState(ByShape):
     eddies : present eddies of the grains; None without fluctuations.
     """
 
-    x: Floats
-    w: Floats
-    force_z: Floats
-    u: Floats
+    x: Annotated[Floats, "grain", 3]
+    w: Annotated[Floats, "filled", "cell"]
+    force_z: Annotated[Floats, "filled", "cell"]
+    u: Annotated[Floats, "station", "cell"]
     eddies: Eddies | None = None
 
 
@@ -367,7 +350,7 @@ class RowCouplingState(ByShape):
     due: int
     exchanges: int
     worst: float
-    passing: Floats
+    passing: Annotated[Floats, "station"]
     grains: RowGrainState | None = None
 
     def fault(self, touched: int) -> str:

@@ -5,7 +5,8 @@ The restored arrays go to compiled code without bounds checks: an id out of rang
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import Any, cast, get_args, get_type_hints
+from types import UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from ryusa.model.rows import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.water.kinds import KINDS
 
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
@@ -193,31 +195,32 @@ class _Reader:
     def _coupling(self, n: int) -> Snapshot:
         if (flow := self._scene.flow) is None:
             raise ValueError("water, but the scene has none")
-        shapes = {f"coupling/{name}": shape for name, shape in flow.state_shapes(n).items()}
-        found: Snapshot = self._part(flow.state, "coupling", shapes)
+        found: Snapshot = self._part(KINDS[type(flow)].state, "coupling", {**flow.places, "grain": n})
         if not 1 <= found.steps < _LATEST or not int(self._values["step"]) < found.due < _LATEST:
             raise ValueError(f"{found.steps} steps between exchanges, the next at step {found.due}")
         if fault := found.fault(n + self._scene.n_fixed):
             raise ValueError(fault)
         return found
 
-    def _part(self, kind: type[Any], about: str, shapes: Mapping[str, tuple[int, ...]]) -> Any:
+    def _part(self, kind: type[Any], about: str, places: Mapping[Any, int]) -> Any:
         """A part of the state of the water, as `_flatten` has named its numbers, arrays and parts."""
         given: dict[str, Any] = {}
-        for name, hint in get_type_hints(kind).items():
+        for name, hint in get_type_hints(kind, include_extras=True).items():
             key = f"{about}/{name}"
-            inner = next((one for one in (hint, *get_args(hint)) if is_dataclass(one)), None)
-            if inner is not None:
-                there = inner is hint or self._values.get(key)
-                given[name] = self._part(cast(type[Any], inner), key, shapes) if there else None
-            elif hint in {int, float}:
-                given[name] = hint(self._values[key])
+            or_none = isinstance(hint, UnionType) or get_origin(hint) is Union
+            one = get_args(hint)[0] if or_none else hint
+            of, *axes = get_args(one) or (one,)
+            shape = tuple(places.get(axis, axis) for axis in axes)
+            if or_none and not self._values.get(key) and key not in self._arrays:
+                given[name] = None
+            elif isinstance(of, type) and is_dataclass(of):
+                given[name] = self._part(of, key, places)
+            elif of in {int, float}:
+                given[name] = of(self._values[key])
             elif name == "x":
-                given[name] = self._positions(key, shapes[key][0])
-            elif hint == Floats:
-                given[name] = self._floats(key, shapes[key])
+                given[name] = self._positions(key, shape[0])
             else:
-                given[name] = self._array(key, shapes[key], _INT)
+                given[name] = self._floats(key, shape) if of == Floats else self._array(key, shape, _INT)
         return kind(**given)
 
     def _bodies(self, present: NDArray[np.bool_]) -> BodyState:

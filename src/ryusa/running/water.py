@@ -32,7 +32,7 @@ def started(scene: Scene, engine: Engine, state: State, step: int, threads: int 
     found, told = state.coupling, None if state.fluid is None else state.fluid.sampled
     if isinstance(engine, SharesColumn):
         return engine.couple(partial(_in_process, step, found), told=found is not None)
-    kind = KINDS[type(scene.flow)]
+    kind = KINDS[type(scene.flow)].fluid
     if found is not None:
         return kind.resume(scene, scene.flow, found, told, threads)
     water = kind.begin(scene, scene.flow, engine.kinematics()[0], step, threads)

@@ -1,9 +1,22 @@
-"""Kinds of water: what moves in which flow."""
+"""Kinds of water: what moves in which flow, and its snapshot."""
 
-from ryusa.model import Column, ColumnRow
-from ryusa.model.flow import Flow
+from typing import NamedTuple
+
+from ryusa.model import Column, ColumnRow, CouplingState, RowCouplingState
+from ryusa.model.flow import Flow, Snapshot
 from ryusa.water.coupling import Coupling
 from ryusa.water.protocol import Fluid
 from ryusa.water.row_coupling import RowCoupling
 
-KINDS: dict[type[Flow], type[Fluid]] = {Column: Coupling, ColumnRow: RowCoupling}
+
+class Kind(NamedTuple):
+    """A kind of water."""
+
+    fluid: type[Fluid]
+    state: type[Snapshot]
+
+
+KINDS: dict[type[Flow], Kind] = {
+    Column: Kind(Coupling, CouplingState),
+    ColumnRow: Kind(RowCoupling, RowCouplingState),
+}
