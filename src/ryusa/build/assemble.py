@@ -9,8 +9,7 @@ import numpy as np
 from ryusa.build.placement import Placement, mask, unit_normal
 from ryusa.laws import drag, motion
 from ryusa.laws.families import Profile
-from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
-from ryusa.model.flow import Flow
+from ryusa.model import ContactLaw, Flow, RollingLaw, Scene, State, Water
 from ryusa.model.scene import EventRule, Floats
 
 _AT_ONCE = 1 << 14  # grains

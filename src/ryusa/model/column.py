@@ -1,9 +1,10 @@
 """The water column over a bed: its fixed properties, its state, and its momentum budget."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -96,6 +97,15 @@ class Column(Flow):
     def text(self) -> str:
         """What it is, in words."""
         return f"a column of {self.n} cells of water"
+
+    def account(self, found: Mapping[str, Any]) -> str:
+        """What is said at the end of a run of the numbers in its summary."""
+        return (
+            f"{found['exchanges']} exchanges with grains, the last after {found['steps_between']} steps; "
+            f"discharge {found['discharge']:.3g} m2/s; stress at the bottom of the column "
+            f"{found['bed_stress']:.3g} Pa; momentum imbalance {found['momentum_residual']:.1e} "
+            "of the largest term"
+        )
 
     @property
     def places(self) -> dict[str, int]:

@@ -1,7 +1,7 @@
 """What the water of a run moves in, whatever its kind, and the fields that a run keeps of it."""
 
 from collections.abc import Mapping
-from typing import ClassVar, NamedTuple, Protocol, Self
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 from ryusa.model.arrays import Floats
 from ryusa.printed import ByShape
@@ -44,6 +44,10 @@ class Flow(ByShape):
     @property
     def text(self) -> str:
         """What it is, in words."""
+        raise NotImplementedError
+
+    def account(self, found: Mapping[str, Any]) -> str:
+        """What is said at the end of a run of the numbers in its summary."""
         raise NotImplementedError
 
     @property

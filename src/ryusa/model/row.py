@@ -1,9 +1,10 @@
 """A row of water columns along a stream: its fixed properties, its ends, and its state."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,6 +144,22 @@ class ColumnRow(Flow):
     def text(self) -> str:
         """What it is, in words."""
         return f"a row of {self.n_segment} columns of {self.column.n} cells of water"
+
+    def account(self, found: Mapping[str, Any]) -> str:
+        """What is said at the end of a run of the numbers in its summary."""
+        courant = f"Courant number at most {found['courant']:.2g}; per width {found['volume']:.4g} m2 in it"
+        first = f"discharge {found['discharge_first']:.4g} m2/s"
+        end = f"momentum imbalance {found['momentum_residual']:.1e} of the largest term"
+        if found["grains"]:
+            return (
+                f"{found['exchanges']} exchanges with grains in a row of columns, the last after "
+                f"{found['steps_between']} steps; {courant}; {first}; {end}"
+            )
+        return (
+            f"{found['steps']} steps of a row, {courant}, {found['entered']:.4g} m2 entered and "
+            f"{found['left']:.4g} m2 left; {first} upstream and "
+            f"{found['discharge_last']:.4g} m2/s downstream; {end}"
+        )
 
     def segment_at(self, x: Floats) -> Ints:
         """Number of the segment at places along x [m], beyond an end of that there, same shape."""

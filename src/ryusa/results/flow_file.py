@@ -30,7 +30,7 @@ def flow_scalars(flow: Flow | None) -> dict[str, Any]:
     found: dict[str, Any] = {"column": None}
     if isinstance(flow, ColumnRow):
         return found | {ROW: _row_scalars(flow)}
-    return found | {name: asdict(flow) for name, kind in FLOWS.items() if isinstance(flow, kind)}  # type: ignore[call-overload]
+    return found | {name: asdict(flow) for name, kind in FLOWS.items() if type(flow) is kind}  # type: ignore[call-overload]
 
 
 def _row_scalars(row: ColumnRow) -> dict[str, Any]:

@@ -175,21 +175,22 @@ class Results:
         rows = [part.of_walls(name, shape) for part in self._parts if part.n_frame]
         return np.concatenate([np.zeros((0, *shape)), *rows])
 
+    @cached_property
+    def fluid(self) -> WaterFrames | None:
+        """Fields of the water at every frame, whatever its kind; None if none feels the grains."""
+        if (flow := self.scene.flow) is None:
+            return None
+        return WaterFrames(flow, self.frames.t, **read_frames(self._parts, flow.GROUP, flow.frame_shapes()))
+
     @property
     def water(self) -> WaterFrames | None:
         """Profiles of the water at every frame; None if the run has no water column."""
-        return None if self.scene.column is None else self._water
+        return None if self.scene.column is None else self.fluid
 
     @property
     def row(self) -> WaterFrames | None:
         """Water of a row of columns at every frame; None if the run has none."""
-        return None if self.scene.row is None else self._water
-
-    @cached_property
-    def _water(self) -> WaterFrames:
-        flow = self.scene.flow
-        assert flow is not None
-        return WaterFrames(flow, self.frames.t, **read_frames(self._parts, flow.GROUP, flow.frame_shapes()))
+        return None if self.scene.row is None else self.fluid
 
     @property
     def grains(self) -> Grains:

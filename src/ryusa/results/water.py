@@ -5,8 +5,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import ColumnRow
-from ryusa.model.flow import Flow
+from ryusa.model import ColumnRow, Flow
 
 Floats = NDArray[np.float64]
 _OF_FLOW = ("z", "faces", "floor")  # heights [m]

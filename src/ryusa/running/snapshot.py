@@ -13,17 +13,9 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, GivesPieces
 from ryusa.errors import CheckpointError
-from ryusa.model import (
-    BodyState,
-    Contacts,
-    EngineBlock,
-    FluidAtGrains,
-    Scene,
-    State,
-)
+from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, Scene, Snapshot, State
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import N_EVENT, N_STATE
-from ryusa.model.flow import Snapshot
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.rows import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
-from ryusa.model import Scene, State
+from ryusa.model import Scene, Snapshot, State
 from ryusa.model.arrays import Floats
-from ryusa.model.flow import Snapshot
 from ryusa.water.coupling import Coupling
 from ryusa.water.kinds import KINDS
 from ryusa.water.processes import SharingProcesses

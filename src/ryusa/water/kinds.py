@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from ryusa.model import Column, ColumnRow, CouplingState, RowCouplingState
-from ryusa.model.flow import Flow, Snapshot
+from ryusa.model import Column, ColumnRow, CouplingState, Flow, RowCouplingState, Snapshot
 from ryusa.water.coupling import Coupling
 from ryusa.water.protocol import Fluid
 from ryusa.water.row_coupling import RowCoupling

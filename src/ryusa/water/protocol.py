@@ -6,9 +6,8 @@ from typing import Any, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import Scene
+from ryusa.model import Scene, Snapshot
 from ryusa.model.arrays import Floats
-from ryusa.model.flow import Snapshot
 
 
 class Fluid(Protocol):
