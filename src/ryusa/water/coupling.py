@@ -215,17 +215,7 @@ class Coupling:
         self._arrays.force_z[:] = force_z
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
-        """Give the water what the grains took in the interval, move it on, and tell the grains anew.
-
-        Parameters
-        ----------
-        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); where grains enter and
-            leave, nan for one that is away.
-        impulse : what each took from the water in the interval, columns of `model.fluid`.
-
-        Returns
-        -------
-        sampled : columns of `model.fluid`, shape (n_grain, N_SAMPLED); for the engine.
+        """Give, move on and tell, as `Fluid.exchange`.
 
         Raises
         ------
@@ -272,25 +262,13 @@ class Coupling:
         return self.sampled
 
     def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due, with an exchange of what was taken so far.
-
-        Parameters
-        ----------
-        step : of the engine.
-        x, v, impulse : as in `exchange`.
-        """
+        """End the interval before the next exchange is due, with an exchange of what was taken so far."""
         if step > self.due - self.steps:  # grains have moved since the last exchange
             self.steps, self.due = self.steps - (self.due - step), step
             self.exchange(x, v, impulse)
 
     def among(self, x: Floats, step: int) -> "Coupling":
-        """The same water at a step at which grains have entered or left, just after an exchange.
-
-        Parameters
-        ----------
-        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
-        step : of the engine; the next exchange is due one later, as the drag on those that entered is not
-            known yet.
+        """The same water at a step at which grains have entered or left, as `Fluid.among`.
 
         Notes
         -----

@@ -132,7 +132,7 @@ class RowCoupling:
             self.grains = self.grains.changed(scene, self.row, self.state)
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
-        """Move the water on, and give what the grains are told; parameters as of `Coupling`.
+        """Move the water on, and give what the grains are told; parameters as of `Fluid`.
 
         Raises
         ------
@@ -166,13 +166,13 @@ class RowCoupling:
             self.grains.follow(ends)
 
     def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due; parameters as of `Coupling.finish`."""
+        """End the interval before the next exchange is due; parameters as of `Fluid.finish`."""
         if step > self.due - self.steps:  # grains have moved since the last exchange
             self.steps, self.due = self.steps - (self.due - step), step
             self.exchange(x, v, impulse)
 
     def among(self, x: Floats, step: int) -> "RowCoupling":
-        """The same water at a step at which grains have entered or left; parameters as of `Coupling.among`.
+        """The same water at a step at which grains have entered or left; parameters as of `Fluid.among`.
 
         Notes
         -----
