@@ -10,6 +10,7 @@ from ryusa.model import Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.flow import Field, Flow
 from ryusa.model.fluid import N_SAMPLED, SUBMERGED, U
+from ryusa.water.protocol import Fluid
 
 
 @dataclass(frozen=True, repr=False)
@@ -62,7 +63,7 @@ class CurrentState:
         return "" if touched else "a current without grains"
 
 
-class Drift:
+class Drift(Fluid):
     """The water of a `Current`: m du/dt = m g_x - force on the grains."""
 
     def __init__(self, scene: Scene, flow: Any, n: int, found: CurrentState) -> None:
@@ -94,16 +95,8 @@ class Drift:
         self.due += self.steps
         return self.sampled
 
-    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        if step > self.due - self.steps:
-            self.steps, self.due = self.steps - (self.due - step), step
-            self.exchange(x, v, impulse)
-
     def among(self, x: Floats, step: int) -> "Drift":
         return type(self)(self.scene, self.flow, len(x), replace(self.snapshot(), steps=1, due=step + 1))
-
-    def ends_with(self, after: Scene) -> bool:
-        return False
 
     def change(self, scene: Scene) -> None:
         self.scene, self.flow = scene, scene.flow
@@ -116,11 +109,6 @@ class Drift:
 
     def surface_at(self, x: Floats) -> Floats:
         return self.flow.first_surface(x)
-
-    def refuse_lost(self, x: Floats, grains: Any, step: int, t: float) -> None:
-        return
-
-    bed_at_inlet = 0.0
 
     @property
     def text(self) -> str:

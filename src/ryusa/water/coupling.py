@@ -28,6 +28,7 @@ from ryusa.water.exchange_arrays import ExchangeArrays, concentration_of_bed
 from ryusa.water.fixed_grains import steady_start
 from ryusa.water.momentum_balance import DONE, GRADIENT, SURFACE
 from ryusa.water.processes import SharingProcesses
+from ryusa.water.protocol import Fluid
 from ryusa.water.solve import budget_of, fault_of, profiles_of, water_of
 
 numbers(__name__, Start.REST, Start.STEADY)
@@ -35,7 +36,7 @@ numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)
 
 
 @dataclass
-class Coupling:
+class Coupling(Fluid):
     """The column of water of a run, and the state of the water at its grains.
 
     Attributes
@@ -192,11 +193,6 @@ class Coupling:
         """Momentum budget of the water over the last interval; None before the first, and after a resume."""
         return budget_of(self._out) if len(self._out) == step.N_SCALAR else None
 
-    def ends_with(self, after: Scene) -> bool:
-        """No change has to wait for the end of an interval."""
-        del after
-        return False
-
     def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         assert scene.column is not None
@@ -261,12 +257,6 @@ class Coupling:
         self.sampled = self._water_at_grains()
         return self.sampled
 
-    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due, with an exchange of what was taken so far."""
-        if step > self.due - self.steps:  # grains have moved since the last exchange
-            self.steps, self.due = self.steps - (self.due - step), step
-            self.exchange(x, v, impulse)
-
     def among(self, x: Floats, step: int) -> "Coupling":
         """The same water at a step at which grains have entered or left, as `Fluid.among`.
 
@@ -289,14 +279,6 @@ class Coupling:
     def surface_at(self, x: Floats) -> Floats:
         """Height of the surface, the same everywhere [m], same shape."""
         return np.full(x.shape, float(self._out[SURFACE]))
-
-    def refuse_lost(self, x: Floats, grains: Ints, step: int, t: float) -> None:
-        """A column has no ends."""
-
-    @property
-    def bed_at_inlet(self) -> float:
-        """Nothing enters a column [m]."""
-        return 0.0
 
     @property
     def text(self) -> str:

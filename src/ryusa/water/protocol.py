@@ -17,10 +17,12 @@ class Fluid(Protocol):
 
     Attributes
     ----------
+    steps : steps of the engine in the present interval.
     due : step of the engine at which the next exchange is due.
     sampled : water at the grains as given last, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
     """
 
+    steps: int
     due: int
     sampled: Floats
 
@@ -71,7 +73,9 @@ class Fluid(Protocol):
 
     def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
         """End the interval at this step, before the next exchange is due; else as `exchange`."""
-        ...
+        if step > self.due - self.steps:  # grains have moved since the last exchange
+            self.steps, self.due = self.steps - (self.due - step), step
+            self.exchange(x, v, impulse)
 
     def among(self, x: Floats, step: int) -> Self:
         """The same water at a step at which grains have entered or left, just after an exchange.
@@ -86,7 +90,8 @@ class Fluid(Protocol):
 
     def ends_with(self, after: Scene) -> bool:
         """Whether its interval has to end before the timeline makes the scene this one."""
-        ...
+        del after
+        return False
 
     def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
@@ -118,12 +123,12 @@ class Fluid(Protocol):
         grains : their ids, shape (n,).
         step, t : of the engine now, its time [s].
         """
-        ...
+        del x, grains, step, t
 
     @property
     def bed_at_inlet(self) -> float:
         """Thickness of the bed where water and grains enter [m]; 0 where none do."""
-        ...
+        return 0.0
 
     @property
     def text(self) -> str:

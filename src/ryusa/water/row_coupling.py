@@ -17,6 +17,7 @@ from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
 from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
+from ryusa.water.protocol import Fluid
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
 from ryusa.water.row_grains import GrainsInRow
@@ -29,7 +30,7 @@ _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
 
 
 @dataclass
-class RowCoupling:
+class RowCoupling(Fluid):
     """The row of columns of a run.
 
     Attributes
@@ -164,12 +165,6 @@ class RowCoupling:
             self._arrays = replace(self._arrays, ends=ends)
         elif self.grains is not None:
             self.grains.follow(ends)
-
-    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due; parameters as of `Fluid.finish`."""
-        if step > self.due - self.steps:  # grains have moved since the last exchange
-            self.steps, self.due = self.steps - (self.due - step), step
-            self.exchange(x, v, impulse)
 
     def among(self, x: Floats, step: int) -> "RowCoupling":
         """The same water at a step at which grains have entered or left; parameters as of `Fluid.among`.
