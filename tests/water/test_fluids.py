@@ -42,6 +42,9 @@ class LayeredDrift(Drift):
         n = self.flow.layers
         return {**super().frame(), "w": np.ones((n, n + 1)), "p": G * np.arange(n)}
 
+    def snapshot(self, kept: Floats | None = None) -> CurrentState:
+        return replace(super().snapshot(kept), mixed=np.ones(self.flow.layers + 1))
+
 
 def flow_of(kind: str, scene: Scene) -> Flow:
     column = replace(scene.column, surface=SurfaceRule.VOLUME)  # type: ignore[type-var]
