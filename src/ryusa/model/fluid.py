@@ -1,6 +1,7 @@
 """Exchange between water and grains: the water at every grain, and the impulse on it."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -29,13 +30,13 @@ class FluidAtGrains(ByShape):
 
     Attributes
     ----------
-    sampled : water at each grain, columns as above, shape (n_grain, N_SAMPLED).
+    sampled : water at each grain, columns as above.
     impulse : impulse of drag, lift, Magnus force and added mass on each grain since `sampled` was set [N s],
-        taken from the water; then drag over slip in the last step [N s/m]; shape (n_grain, N_IMPULSE).
+        taken from the water; then drag over slip in the last step [N s/m].
     """
 
-    sampled: Floats
-    impulse: Floats
+    sampled: Annotated[Floats, "grain", N_SAMPLED]
+    impulse: Annotated[Floats, "grain", N_IMPULSE]
 
     @staticmethod
     def at_rest(n_grain: int) -> "FluidAtGrains":

@@ -16,7 +16,6 @@ from ryusa.errors import CheckpointError
 from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, Scene, Snapshot, State
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import N_EVENT, N_STATE
-from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.rows import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
@@ -131,7 +130,7 @@ class _Reader:
             image=self._array("image", (len(image) and n, 2), _INT32),
             contacts=self._contacts(),
             tally=self._tally(),
-            fluid=self._fluid(n) if values.get("fluid") else None,
+            fluid=self._part(FluidAtGrains, "fluid", {"grain": n}) if values.get("fluid") else None,
             coupling=self._coupling(n) if values.get("coupling") else None,
             bodies=self._bodies(present) if values.get("bodies") else None,
             engine=self._engine(),
@@ -178,11 +177,6 @@ class _Reader:
         for name in ("overlap_grain", "overlap_step", "n_contact"):
             found[name] = int(found[name])
         return Tally(**found)
-
-    def _fluid(self, n: int) -> FluidAtGrains:
-        return FluidAtGrains(
-            self._floats("fluid/sampled", (n, N_SAMPLED)), self._floats("fluid/impulse", (n, N_IMPULSE))
-        )
 
     def _coupling(self, n: int) -> Snapshot:
         if (flow := self._scene.flow) is None:
