@@ -139,7 +139,7 @@ def measure(columns: int) -> list[dict[str, Any]]:
     assert column is not None
     flowing = CpuEngine(threads=2)
     flowing.load(scene, built["column"].state)
-    coupling = Coupling.begin(scene, column, column.interval, built["column"].state.x)
+    coupling = Coupling.begin(scene, column, built["column"].state.x)
     flowing.set_fluid(coupling.sampled)
     done = 0
     while done < FLOW:
@@ -154,7 +154,7 @@ def measure(columns: int) -> list[dict[str, Any]]:
         own = replace(state, fluid=None if one.scene.column is None else state.fluid, contacts=state.contacts)
         engine.load(dt, own)
         if one.scene.column is not None:
-            water = Coupling.begin(dt, one.scene.column, column.interval, state.x, coupling.state, state.step)
+            water = Coupling.begin(dt, one.scene.column, state.x, state.step, state=coupling.state)
             couplings[name] = water
             engine.set_fluid(water.sampled)
     taken: dict[str, list[float]] = {name: [] for name in engines}

@@ -95,7 +95,7 @@ def block(along: int, across: int, water: str, n_cell: int) -> Any:
         area=along * across * wide**2, bed=BedKind.MOVING, mixing=Mixing.LI_SAWAMOTO, phi_max=0.6, d=D,
         g_x=float(fixed.gravity[0]), interval=INTERVAL,
     )  # fmt: skip
-    return replace(fixed, column=column), first
+    return replace(fixed, flow=column), first
 
 
 def loaded(shape: tuple[int, int], water: str, n_cell: int = CELLS[0]) -> tuple[Any, Any]:

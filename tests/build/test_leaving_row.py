@@ -28,6 +28,6 @@ def test_no_grain_goes_farther_than_half_a_diameter_beyond_the_end_of_a_row():
 def test_scenes_without_an_exit_or_a_row_keep_their_instants(key):
     scene = build(read(case_path("slope_break.toml"))).scene
     long = replace(scene.traffic, interval=10_000)
-    lacking = {"exits": {"traffic": replace(long, exits=())}, "row": {"traffic": long, "row": None}}
+    lacking = {"exits": {"traffic": replace(long, exits=())}, "row": {"traffic": long, "flow": None}}
     assert leaving_row(replace(scene, **lacking[key])).traffic.interval == 10_000
     assert leaving_row(replace(scene, traffic=long)).traffic.interval == scene.traffic.interval

@@ -55,7 +55,7 @@ def stream():
         surface=SurfaceRule.VOLUME, mixing=Mixing.LI_SAWAMOTO, g_x=float(fixed.gravity[0]), d=D,
         fluctuations=Fluctuations.RANDOM_WALK, seed=3, interval=INTERVAL,
     )  # fmt: skip
-    return replace(fixed, column=column), first
+    return replace(fixed, flow=column), first
 
 
 def in_a_column(name):
@@ -72,7 +72,7 @@ def in_a_column(name):
     gone = fixed.fixed_active & (np.arange(fixed.n_fixed) % 2 == 0)
     steeper = replace(
         fixed, gravity=np.array([1.5, 0.0, -9.6]), fixed_active=gone,
-        column=replace(fixed.column, g_x=1.5),
+        flow=replace(fixed.column, g_x=1.5),
     )  # fmt: skip
     ends = []
     for state in (engine.state(), kept):  # the second goes on from the snapshot

@@ -153,6 +153,7 @@ def test_clumps_and_a_column_gain_together_what_weight_and_bed_give(buoyancy):
 @pytest.mark.full
 def test_clumps_in_a_column_give_the_same_bits_for_any_threads_and_after_a_resume():
     made, column = cloud()
+    column = replace(column, interval=20)
 
     def onward(engine, coupling, intervals):
         for _ in range(intervals):
@@ -162,7 +163,7 @@ def test_clumps_in_a_column_give_the_same_bits_for_any_threads_and_after_a_resum
     def begun(threads):
         engine = CpuEngine(threads=threads)
         engine.load(*made)
-        coupling = Coupling.begin(made[0], column, 20, made[1].x)
+        coupling = Coupling.begin(made[0], column, made[1].x)
         engine.set_fluid(coupling.sampled)
         return engine, coupling
 
@@ -175,7 +176,7 @@ def test_clumps_in_a_column_give_the_same_bits_for_any_threads_and_after_a_resum
     onward(*one, 60)
     again = CpuEngine()
     again.load(made[0], half[0])
-    coupling = Coupling.resume(made[0], column, 20, half[1], half[0].fluid.sampled)
+    coupling = Coupling.resume(made[0], column, half[1], half[0].fluid.sampled)
     onward(again, coupling, 60)
     assert bits(again.state()) == bits(one[0].state())
     assert np.array_equal(again.state().bodies.momentum, one[0].state().bodies.momentum)
@@ -217,7 +218,7 @@ def test_what_clumps_in_water_cannot_have_is_refused_by_name():
     assert "bodies.drag_form" in CpuEngine().refuses(dry)[0]
     films = replace(fixed, water=replace(fixed.water, rebound=Rebound.EXPONENTIAL))
     assert "rebound must be dry" in " ".join(CpuEngine().refuses(films))
-    stirred = replace(fixed, column=replace(column, fluctuations=Fluctuations.RANDOM_WALK))
+    stirred = replace(fixed, flow=replace(column, fluctuations=Fluctuations.RANDOM_WALK))
     assert "without fluctuations" in " ".join(CpuEngine().refuses(stirred))
     wrong = replace(fixed, bodies=replace(fixed.bodies, drag_form=-fixed.bodies.drag_form))
     assert "drag_form is not finite and positive" in " ".join(CpuEngine().refuses(wrong))

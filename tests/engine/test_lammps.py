@@ -404,7 +404,7 @@ ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
         (of_water(drag_of_form=DragOfForm.HAIDER_LEVENSPIEL), "water.drag_of_form", "drag_of_form='sphere'"),
         (of_scene(events=EventRule.ALL), "record.events", "--set record.events='none'"),
         (of_scene(forces=True), "record.forces", "--set record.forces='false'"),
-        (of_scene(row=ONE_ROW), "water.row", "one column would be"),
+        (of_scene(flow=ONE_ROW), "water.row", "one column would be"),
         (of_scene(traffic=Traffic()), "[[feeds]] and [[exits]]", "a fixed number of grains"),
         (
             of_materials(e_n=0.1, zeta_n=zeta_for_restitution(0.1, False)), "of 'grains' and 'steel'",
@@ -432,7 +432,7 @@ KNOWN = {
     Water: "profile u_star k_rough z_zero u_uniform depth above nu rho_w drag c_d drag_of_form a_2 c_m "
     "torque rebound st_c e_least asperity film_reach buoyancy hindrance hindrance_exponent lift c_l magnus",
     Scene: "d m m_added m_weight inertia x_fixed d_fixed fixed_active plane_normal plane_point plane_active "
-    "contact dt gravity rolling rotation water column row traffic plane_case period world_low world_high "
+    "contact dt gravity rolling rotation water flow traffic plane_case period world_low world_high "
     "slab_width overlap_limit events forces tracked groups walls materials bodies",
 }
 

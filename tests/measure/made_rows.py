@@ -9,7 +9,7 @@ from ryusa import build
 from ryusa.laws.families import BedKind, SurfaceRule
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 
 D, WIDTH, DX, DZ, CELLS = 2.0e-3, 0.01, 0.01, 0.5e-3, 80
 PACKED, G = 0.6, 9.81
@@ -36,7 +36,7 @@ def run_of(row: ColumnRow, t: Any, x: Any, v: Any, rows: Any = None, **water: An
     object.__setattr__(scene, "gravity", np.array([0.01 * G, 0.0, -G]))
     shapes = row.frame_shapes()
     frames = {name: np.zeros((len(t), *shape)) for name, shape in shapes.items()} | water
-    found = RowFrames(row, t, **frames)
+    found = WaterFrames(row, t, **frames)
     steps = np.round(t / 1.0e-3).astype(np.int64)
     shown = SimpleNamespace(t=t, step=steps, x=x, v=v)
     return SimpleNamespace(case={}, scene=scene, frames=shown, row=found, passages=rows)

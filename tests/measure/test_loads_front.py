@@ -18,7 +18,7 @@ from ryusa.laws.families import SurfaceRule
 from ryusa.measure.loads import Loads, loads
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowDam, RowEnd
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.water.row import advance_row, row_at_rest
 
 FORCE, FLOW = 0.02, 0.01
@@ -52,7 +52,7 @@ def run_of(surface: Any, speed: Any, inlet: RowEnd, time: float, every: float, *
         for name in ("surface", "volume", "content")
     }
     scene = SimpleNamespace(walls=None, n_grain=0, gravity=np.array([0.0, 0.0, -G]))
-    return SimpleNamespace(case={}, scene=scene, row=RowFrames(row, t, **frames))
+    return SimpleNamespace(case={}, scene=scene, row=WaterFrames(row, t, **frames))
 
 
 @pytest.fixture(scope="module")

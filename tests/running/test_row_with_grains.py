@@ -1,7 +1,6 @@
 """A row of columns with grains from a case file: it runs, resumes with the same bits, and refuses by name."""
 
 import sys
-from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,6 +21,7 @@ from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model import RowState
 from ryusa.model.fluid import EXTRA_X
 from ryusa.results import Results, schema
+from ryusa.results.water import WaterFrames
 from ryusa.running.summary import summary_lines
 from ryusa.view.flow import surfaces
 from ryusa.view.page import encoded
@@ -65,7 +65,7 @@ def test_the_row_holds_its_water_and_closes_momentum_and_energy(reach: Results) 
     assert np.ptp(found.volume.sum(axis=1)) < 1e-14 * found.volume[0].sum()
     assert summary["water"]["momentum_residual"] < 1e-9
     assert summary["water"]["exchanges"] > 30
-    (said,) = (line for line in summary_lines(summary) if line.startswith("water:"))
+    (said,) = (line for line in summary_lines(summary, reach.scene.flow) if line.startswith("water:"))
     assert "exchanges with grains in a row of columns" in said
     assert summary["energy"]["residual"] < 1e-3
     phi = found.phi.sum() * found.row.column.dz * found.row.dx
@@ -130,7 +130,9 @@ def test_depth_counts_from_where_grains_fall_below_half_of_packed(reach: Results
     row, column = reach.row, reach.row.row.column
     cells = 40 + 10 * np.arange(4)  # of the bed, in each segment
     phi = np.where(np.arange(column.n) < cells[:, None], column.phi_max, 0.0)
-    told = replace(row, phi=np.tile(phi, (len(row.t), 1, 1)))
+    fields = {name: getattr(row, name) for name in row.flow.fields()}
+    fields["phi"] = np.tile(phi, (len(row.t), 1, 1))
+    told = WaterFrames(row.flow, row.t, **fields)
     run = SimpleNamespace(scene=reach.scene, frames=reach.frames, row=told, case=reach.case)
     one, every = long_section(run), depth_history(run)
     assert one.bed == pytest.approx(column.z_low + cells * column.dz)

@@ -63,7 +63,7 @@ def fed(surface: SurfaceRule = SurfaceRule.VOLUME) -> tuple[Scene, State]:
     there = np.arange(scene.n_grain) < begin
     x, v, omega = (np.where(there[:, None], one, np.nan) for one in (state.x, state.v, state.omega))
     scene = replace(
-        scene, traffic=Traffic(feeds, exits, INTERVAL, begin), column=replace(column, surface=surface),
+        scene, traffic=Traffic(feeds, exits, INTERVAL, begin), flow=replace(column, surface=surface),
         world_low=(-1.0, -1.0, -1.0), world_high=(1.0, 1.0, 1.0),
     )  # fmt: skip
     return scene, replace(state, x=x, v=v, omega=omega, present=there)
@@ -288,7 +288,7 @@ def in_still_water(
     away = {name: np.resize(one, (count, *one.shape[1:])) for name, one in away.items()}
     scene = replace(
         scene, **rows, gravity=np.array([0.0, 0.0, -G]), traffic=Traffic((feed,), (out,), 100, 0),
-        column=replace(column, g_x=0.0, area=area, dz=tall * column.dz, depth=tall * column.depth),
+        flow=replace(column, g_x=0.0, area=area, dz=tall * column.dz, depth=tall * column.depth),
         tracked=scene.tracked[:0], world_low=(-1.0, -1.0, -1.0), world_high=(1.0, 1.0, 1.0),
     )  # fmt: skip
     state = replace(state, **away, image=np.zeros((count, 2), np.int32))

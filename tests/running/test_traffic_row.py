@@ -37,7 +37,7 @@ def in_row() -> tuple[Scene, State]:
     row = ColumnRow(
         column, scene.period[0] / n, np.full(n, column.z_low), G, start=np.full(n, column.z_surface)
     )
-    return replace(scene, column=None, row=row), state
+    return replace(scene, flow=row), state
 
 
 def carried_out(folder: Path, **how: Any) -> Results:

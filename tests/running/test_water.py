@@ -36,7 +36,7 @@ def falling(interval=10):
         z_low=0.0, dz=0.25 * D, n=48, depth=10.0 * D, area=n * 2.0 * D * D, bed=BedKind.ROUGH,
         k_rough=0.5 * D, mixing=Mixing.PARABOLIC, g_x=G * math.sin(0.05), interval=interval,
     )  # fmt: skip
-    return replace(fixed, column=column), first
+    return replace(fixed, flow=column), first
 
 
 def over_fixed_grains() -> tuple[Scene, State]:
@@ -46,7 +46,7 @@ def over_fixed_grains() -> tuple[Scene, State]:
     row = np.column_stack([(np.arange(n) + 0.5) * 2.0 * D, np.zeros(n), np.full(n, 0.5 * D)])
     column = replace(fixed.column, bed=BedKind.MOVING, mixing=Mixing.PRANDTL, start=Start.STEADY)
     return replace(
-        fixed, x_fixed=row, d_fixed=np.full(n, D), fixed_active=np.ones(n, dtype=np.bool_), column=column
+        fixed, x_fixed=row, d_fixed=np.full(n, D), fixed_active=np.ones(n, dtype=np.bool_), flow=column
     ), first
 
 
@@ -116,7 +116,7 @@ def test_a_snapshot_with_eddies_and_films_resumes_with_the_same_bits(k: int) -> 
         fixed.column, fluctuations=Fluctuations.RANDOM_WALK, seed=112
     )  # some eddies are about to end
     water = replace(fixed.water, rebound=Rebound.EXPONENTIAL)
-    fixed = replace(fixed, column=column, water=water)
+    fixed = replace(fixed, flow=column, water=water)
     whole = stepping(fixed, first)
     whole._steps(600)
     before = stepping(fixed, first)
@@ -132,7 +132,7 @@ def test_a_snapshot_of_another_column_is_refused() -> None:
     state = stepping(fixed, first).state()
     assert fixed.column is not None
     with pytest.raises(ValueError, match="48 cells and 30 grains, the run has 49 cells"):
-        stepping(replace(fixed, column=replace(fixed.column, n=49)), state)
+        stepping(replace(fixed, flow=replace(fixed.column, n=49)), state)
 
 
 def test_grains_removed_by_the_timeline_no_longer_fill_the_column() -> None:
@@ -175,7 +175,7 @@ def test_a_bed_that_never_packs_gives_a_warning(tmp_path: Path) -> None:
         folder = tmp_path / str(phi_max)
         stop = Stop(time=20 * fixed.dt)
         made = run_scene(
-            replace(fixed, column=column), first, folder, frames=10 * fixed.dt, stop=stop, progress=False
+            replace(fixed, flow=column), first, folder, frames=10 * fixed.dt, stop=stop, progress=False
         )
         assert any("packed concentration" in text for text in made.summary["warnings"]) is said
         assert 0.05 < made.summary["water"]["densest"] < 0.61

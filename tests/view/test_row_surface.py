@@ -9,7 +9,7 @@ import pytest
 
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.view.box import box_of
 from ryusa.view.flow import SurfaceLine, surface_line, surfaces
 from ryusa.view.picture import DEEP_ALPHA, Painter
@@ -25,7 +25,7 @@ def run_of(depths: Any, *, ends: bool) -> Any:
     row = ColumnRow(Column(-0.1, 0.01, 100, 0.5), 0.5, bottom, 9.81, end, end, x_low=2.0)
     t = np.arange(len(depths)) * 1.0
     found = {name: np.zeros((len(t), *shape)) for name, shape in row.frame_shapes().items()}
-    shown = RowFrames(row, t, **(found | {"surface": bottom + np.asarray(depths)}))
+    shown = WaterFrames(row, t, **(found | {"surface": bottom + np.asarray(depths)}))
     return SimpleNamespace(row=shown, water=None, scene=SimpleNamespace(water=None))
 
 

@@ -28,7 +28,7 @@ def advance_together(made, column, intervals, longest=20, water_state=None):
     fixed, first = made
     engine = CpuEngine()
     engine.load(fixed, first)
-    coupling = Coupling.begin(fixed, column, longest, first.x, water_state)
+    coupling = Coupling.begin(fixed, replace(column, interval=longest), first.x, state=water_state)
     engine.set_fluid(coupling.sampled)
     for _ in range(intervals):
         steps, before = coupling.steps, coupling.sampled
@@ -62,7 +62,7 @@ def column_of(area, **more):
 
 def test_a_grain_whose_height_is_not_finite_is_named_with_its_step():
     (fixed, first), area = cloud(FORMS[0])
-    coupling = Coupling.begin(fixed, column_of(area), 20, first.x)
+    coupling = Coupling.begin(fixed, column_of(area), first.x)
     x = first.x.copy()
     x[7, 2] = np.nan
     with pytest.raises(NotANumber, match="height is not finite: grain 7, step 1, t ="):
@@ -168,7 +168,7 @@ def test_fixed_grains_fill_the_cells_that_they_stand_in():
     fixed = replace(
         made[0], x_fixed=bed, d_fixed=np.full(count, D), fixed_active=np.ones(count, dtype=np.bool_)
     )
-    coupling = Coupling.begin(fixed, column_of(area), 20, made[1].x)
+    coupling = Coupling.begin(fixed, column_of(area), made[1].x)
     assert coupling.phi[:5].sum() * 0.2 * D * area == pytest.approx(count * math.pi / 6 * D**3)
 
 
@@ -176,9 +176,9 @@ def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
     made, area = cloud(Buoyancy.PRESSURE, n=6)
     fixed, first = made
     column = column_of(area, bed=BedKind.NO_SLIP, mixing=Mixing.LAMINAR)
-    at_rest = Coupling.begin(fixed, column, 20, first.x).state
+    at_rest = Coupling.begin(fixed, column, first.x).state
     sheared = replace(at_rest, u=3.0 * (column.z - column.z_low))
-    coupling = Coupling.begin(fixed, column, 20, first.x, sheared)
+    coupling = Coupling.begin(fixed, column, first.x, state=sheared)
     k_d, dt = 2.0e-5, 1e-3
     taken = np.zeros((6, 4))
     taken[:, 0], taken[:, 3] = k_d * coupling.sampled[:, 0] * dt, k_d  # drag on grains at rest

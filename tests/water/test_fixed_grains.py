@@ -39,7 +39,7 @@ def alone(made, column, **more):
     """The bed without its free grain."""
     fixed, _ = made
     none = {name: np.zeros(0) for name in ("d", "m", "m_added", "m_weight", "inertia")}
-    return Coupling.begin(replace(fixed, **none), column, 50, np.zeros((0, 3)), **more)
+    return Coupling.begin(replace(fixed, **none), column, np.zeros((0, 3)), **more)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -85,7 +85,7 @@ def test_fixed_grains_under_a_rough_wall_take_no_force():
 def test_a_steady_start_is_the_steady_flow_over_the_bed(form):
     made, column = bed(form)
     column = replace(column, start=Start.STEADY)
-    coupling = Coupling.begin(made[0], column, 50, made[1].x)
+    coupling = Coupling.begin(made[0], column, made[1].x)
     first = coupling.state
     assert (first.t, first.step) == (0.0, 0)
     wet = np.clip(15.0 * D - column.faces[:-1], 0.0, column.dz)
@@ -105,7 +105,7 @@ def test_still_water_begins_at_rest_either_way():
     made, column = bed(Buoyancy.STRESS)
     still = replace(column, g_x=0.0, start=Start.STEADY)
     level = replace(made[0], gravity=np.array([0.0, 0.0, -G]))
-    assert (Coupling.begin(level, still, 50, made[1].x).state.u == 0.0).all()
+    assert (Coupling.begin(level, still, made[1].x).state.u == 0.0).all()
 
 
 def test_settled_grains_have_the_packed_concentration_and_none_is_lost():

@@ -41,7 +41,7 @@ def stepped(made, column, intervals, longest=20):
     """Grains and water together; yields coupling, steps and speeds before and after every interval."""
     engine = CpuEngine()
     engine.load(*made)
-    coupling = Coupling.begin(made[0], column, longest, made[1].x)
+    coupling = Coupling.begin(made[0], replace(column, interval=longest), made[1].x)
     engine.set_fluid(coupling.sampled)
     for _ in range(intervals):
         steps, before = coupling.steps, engine.kinematics()[1]
@@ -80,7 +80,7 @@ def test_a_grain_half_in_the_water_has_half_its_buoyancy_and_added_mass(form):
     (fixed, first), area = made_of([SURFACE], form)
     engine = CpuEngine()
     engine.load(fixed, first)
-    coupling = Coupling.begin(fixed, column_of(area), 20, first.x)
+    coupling = Coupling.begin(fixed, column_of(area), first.x)
     engine.set_fluid(coupling.sampled)
     engine.advance(1).raise_if_any()
     rho_s, v_z = 2650.0, engine.kinematics()[1][0, 2]

@@ -115,7 +115,7 @@ def test_a_period_of_one_segment_has_the_bits_of_one_column(start):
     if start is Start.STEADY:
         state = grains.flowing(np.full(1, column.z_surface))
     grains = GrainsInRow.begin(fixed, row, first.x, state)
-    coupling = Coupling.begin(fixed, column, 20, first.x)
+    coupling = Coupling.begin(fixed, replace(column, interval=20), first.x)
     engine = CpuEngine()
     engine.load(fixed, first)
     for _ in range(25):
@@ -256,7 +256,7 @@ def test_a_uniform_row_has_the_profile_of_one_column_over_the_same_grains():
     one, first = cloud(fixed=bed, length=dx, **far)
     all_of_it, _ = cloud(fixed=every, length=n * dx, **far)
     column = column_of(dx * D, dz=0.5 * D, n=50, **c)
-    coupling = Coupling.begin(one, column, 20, first.x)
+    coupling = Coupling.begin(one, replace(column, interval=20), first.x)
     row = row_of(replace(column, area=n * dx * D), n * dx, n)
     now = GrainsInRow.begin(all_of_it, row, first.x).at_rest(np.full(n, column.z_surface))
     grains = GrainsInRow.begin(all_of_it, row, first.x, now)

@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.build.placement import Placement, mask, unit_normal
 from ryusa.laws import drag, motion
 from ryusa.laws.families import Profile
-from ryusa.model import Column, ColumnRow, ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model import ContactLaw, Flow, RollingLaw, Scene, State, Water
 from ryusa.model.scene import EventRule, Floats
 
 _AT_ONCE = 1 << 14  # grains
@@ -25,8 +25,7 @@ class Laws:
     a_3: float = math.pi / 6  # volume over d cubed [-]
     rolling: RollingLaw = field(default_factory=RollingLaw)
     water: Water = field(default_factory=Water)
-    column: Column | None = None  # where the profile is COLUMN
-    row: ColumnRow | None = None  # columns in a row instead
+    flow: Flow | None = None  # where the profile is COLUMN
     g: float = 9.80665  # [m/s2]
     slope: float = 0.0  # [rad], down towards +x
     rotation: bool = True
@@ -103,8 +102,7 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
         rolling=laws.rolling,
         rotation=laws.rotation,
         water=laws.water,
-        column=laws.column,
-        row=laws.row,
+        flow=laws.flow,
         plane_case=laws.plane_case,
         period=placement.period,
         world_low=laws.low or low,

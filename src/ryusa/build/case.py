@@ -149,8 +149,7 @@ def _built(case: Case, found: Derived) -> Built:
     _refuse_unknown_groups(placement, case)
     laws = replace(
         laws_of(case, found, placement.z_zero),
-        column=None if case.row is not None else column_of(case, found, placement),
-        row=row_of(case, found, placement),
+        flow=row_of(case, found, placement) or column_of(case, found, placement),
     )
     placement, traffic = with_feeds(placement, case, found)
     n_first = len(placement.d) if traffic is None else traffic.n_first

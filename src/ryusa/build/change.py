@@ -29,20 +29,19 @@ def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
         angle = entry.slope_angle if entry.slope_angle is not None else math.atan(entry.slope or 0.0)
         tilted = gravity(case.motion.gravity, angle)
         tilted.flags.writeable = False
-        column = None if scene.column is None else replace(scene.column, g_x=float(tilted[0]))
-        row = None if scene.row is None else scene.row.tilted(float(tilted[0]), -float(tilted[2]))
-        return replace(scene, gravity=tilted, column=column, row=row)
+        flow = scene.flow and scene.flow.tilted(float(tilted[0]), -float(tilted[2]))
+        return replace(scene, gravity=tilted, flow=flow)
     if entry.discharge is not None:
         row = scene.row
         assert row is not None
         assert row.upstream is not None
         end = replace(row.upstream, discharge=per_width(case, entry.discharge))
-        return replace(scene, row=replace(row, upstream=end))
+        return replace(scene, flow=replace(row, upstream=end))
     if entry.level is not None:
         row = scene.row
         assert row is not None
         assert row.downstream is not None
-        return replace(scene, row=replace(row, downstream=replace(row.downstream, level=entry.level)))
+        return replace(scene, flow=replace(row, downstream=replace(row.downstream, level=entry.level)))
     if entry.friction is not None or entry.friction_angle is not None:
         mu = entry.friction if entry.friction is not None else math.tan(entry.friction_angle or 0.0)
         return replace(scene, contact=replace(scene.contact, mu=mu))

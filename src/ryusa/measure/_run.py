@@ -23,7 +23,7 @@ class Run(Protocol):
     passages: Any  # grains that entered and left: structured array of dtype model.PASSAGE
     tally: Any  # dict of arrays (n_frame,): the energy account at each frame
     wall_travel: Any  # of each wall along the direction of its servo at each frame (n_frame, n_wall) [m]
-    row: Any  # RowFrames of a row of columns; None without
+    row: Any  # WaterFrames of a row of columns; None without
     walls: Any  # impulses on each wall up to each frame (n_frame, n_wall, N_IMPULSE), model.walls
 
 

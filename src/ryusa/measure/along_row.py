@@ -13,7 +13,7 @@ from ryusa.measure._run import Floats, Run
 from ryusa.measure.profiles import CHUNK
 from ryusa.model import ColumnRow
 from ryusa.printed import ByShape
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 
 Ints = NDArray[np.int64]
 SLOW = 0.1  # speed below which a grain rests, over sqrt(g d), as in `measure.entrainment`
@@ -228,7 +228,7 @@ def volumes_of_heads(run: Run) -> Floats:
     return volume
 
 
-def moving_in_row(run: Run, found: RowFrames, k: int) -> Floats:
+def moving_in_row(run: Run, found: WaterFrames, k: int) -> Floats:
     """Concentration of the grains that move in frame k [-], shape (n_segment, n).
 
     A grain moves from a speed of 0.1 sqrt(g d) on, with the mean diameter, as in `measure.entrainment`.

@@ -11,7 +11,6 @@ from ryusa.measure.approaching_front import ApproachingFront, approaching_front,
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.structures import Structure, of_grains, structures_of, water_on_dam, water_on_mesh
 from ryusa.measure.table import Averaged, Averages
-from ryusa.results.row import RowFrames
 
 SHARES = (0.95, 0.99)  # of the time in which a load stays below a percentile
 
@@ -119,7 +118,7 @@ def loads(run: Run, begin: float | None = None, end: float = math.inf, window: f
     formulae for its force are given beside it.
     """
     frames = run.row
-    if not isinstance(frames, RowFrames):
+    if frames is None:
         raise ResultsError(
             "loads are those on dams and walls in a row of columns; the run has no [water.row]"
         )

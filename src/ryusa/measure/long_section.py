@@ -18,7 +18,7 @@ from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
 from ryusa.printed import ByShape
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.spelling import known_word
 
 Floats = NDArray[np.float64]
@@ -158,7 +158,7 @@ def long_section(
     return _section(run, found, frames, bed)
 
 
-def _section(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> LongSection:
+def _section(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> LongSection:
     """The section at one frame, or means over several."""
     row, now = found.row, float(found.t[frames[-1]])
     fall, (g_x, g_z) = fall_of(row), gravity_at(run, now)
@@ -204,7 +204,7 @@ def _section(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> LongSection:
 _PARTS = ("above", "over")  # of the series: grains and water above the bed, per area [m]
 
 
-def _series(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> dict[str, Floats]:
+def _series(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> dict[str, Floats]:
     """Quantities at some frames, of discharges between them; arrays (n_frame, n_segment) by name."""
     row = found.row
     stress = found.tau[frames].copy()
@@ -350,7 +350,7 @@ def depth_history(
     )  # fmt: skip
 
 
-def row_of(run: Run) -> RowFrames:
+def row_of(run: Run) -> WaterFrames:
     """Frames of the row of columns of a run.
 
     Raises
@@ -365,7 +365,7 @@ def row_of(run: Run) -> RowFrames:
     return found
 
 
-def bed_line(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> Floats:
+def bed_line(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> Floats:
     """Height of the bed of grains in some frames, or of the floor without one [m], (n_frame, n_segment)."""
     floors = np.tile(found.floor, (len(frames), 1))
     column = found.row.column
@@ -384,13 +384,13 @@ def bed_line(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> Floats:
     return floors
 
 
-def _grains_in_cells(found: RowFrames, k: int) -> Floats:
+def _grains_in_cells(found: WaterFrames, k: int) -> Floats:
     """Concentration of grains in frame k, without the matter of dams that let water through [-]."""
     solid = found.row.porous
     return found.phi[k] if solid is None else found.phi[k] - solid.phi
 
 
-def _above(found: RowFrames, frames: Ints, beds: Floats) -> tuple[Floats, Floats]:
+def _above(found: WaterFrames, frames: Ints, beds: Floats) -> tuple[Floats, Floats]:
     """Grains and water between bed and surface, per area [m], shape (n_frame, n_segment) each."""
     row, dz = found.row, found.row.column.dz
     low = row.bottom[:, None] + np.arange(row.column.n) * dz

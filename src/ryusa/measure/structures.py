@@ -15,7 +15,7 @@ from ryusa.model.row import RowDam
 from ryusa.model.wall_shape import in_world, triangles_of
 from ryusa.model.walls import Walls
 from ryusa.model.welding import flipped_sides, rims, welded
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 
 ROUND, SAME = 10.0, 1.0e-6  # heights of a dam that a mesh round it may be longer; share of its size
 
@@ -91,7 +91,7 @@ def structures_of(run: Run, t: float) -> tuple[list[Structure], list[str]]:
     return found, said
 
 
-def water_on_dam(frames: RowFrames, dam: RowDam) -> Floats:
+def water_on_dam(frames: WaterFrames, dam: RowDam) -> Floats:
     """Load of the water at rest on a dam at every frame, per width.
 
     Returns
@@ -130,7 +130,7 @@ def water_on_mesh(run: Run, one: Structure, kept: slice) -> Floats:
     As `water_on_dam`, for the whole mesh [N], [N m]. The outer side is that of the normals of its triangles
     by the order of their corners, of a closed mesh the one outside.
     """
-    frames: RowFrames = run.row
+    frames: WaterFrames = run.row
     line = water_line(frames)
     sides = None if math.isfinite(run.scene.period[1]) else side_planes(run.scene)
     length = frames.row.n_segment * frames.row.dx

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.measure._run import Floats
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 
 Ints = NDArray[np.int64]
 NUDGE = 1.0e-9  # of a piece of the row
@@ -31,7 +31,7 @@ class WaterLine(NamedTuple):
     foot: float
 
 
-def water_line(frames: RowFrames) -> WaterLine:
+def water_line(frames: WaterFrames) -> WaterLine:
     """Water between the middles of segments, level from the last of them to a dam or an end of the row."""
     row, solid = frames.row, frames.row.solid_cells()[frames.row.inner]
     n, open_ends = row.n_segment, not row.periodic

@@ -1,10 +1,11 @@
 """Data of a run: Scene (fixed), State (moving), Contacts (history), Tally (energy account), Column."""
 
-from ryusa.model.column import Budget, Column, WaterState
+from ryusa.model.column import Budget, Column, CouplingState, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.feeds import PASSAGE, Arrivals, Exit, Feed, Traffic
-from ryusa.model.fluid import CouplingState, FluidAtGrains
+from ryusa.model.flow import Flow, Snapshot
+from ryusa.model.fluid import FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
 from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
@@ -27,6 +28,7 @@ __all__ = [
     "Exit",
     "FaceKind",
     "Feed",
+    "Flow",
     "FluidAtGrains",
     "Materials",
     "RigidBodies",
@@ -35,6 +37,7 @@ __all__ = [
     "RowGrainState",
     "RowState",
     "Scene",
+    "Snapshot",
     "State",
     "Tally",
     "Term",

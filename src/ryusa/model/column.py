@@ -1,14 +1,17 @@
 """The water column over a bed: its fixed properties, its state, and its momentum budget."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model.arrays import Floats
+from ryusa.model.eddies import Eddies
+from ryusa.model.flow import Field, Flow
 from ryusa.printed import ByShape
 
 NAN = float("nan")
@@ -24,7 +27,7 @@ class Top(IntEnum):
 
 
 @dataclass(frozen=True, repr=False)
-class Column(ByShape):
+class Column(Flow):
     """Fixed properties of a column of n equal cells, averaged along and across the bed."""
 
     z_low: float  # bottom [m]
@@ -60,7 +63,8 @@ class Column(ByShape):
     fluctuations: Fluctuations = Fluctuations.NONE
     seed: int = 0  # of the random walk
     # exchange with the grains
-    interval: int = 50  # largest coupling interval [steps]
+    # largest coupling interval [steps]
+    interval: int = 50  # pyright: ignore[reportIncompatibleMethodOverride] # read as the property is
     start: Start = Start.REST
     GROUP: ClassVar[str] = "water"  # of its datasets in a run folder
 
@@ -94,11 +98,37 @@ class Column(ByShape):
         """What it is, in words."""
         return f"a column of {self.n} cells of water"
 
-    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the datasets of a frame, as a run folder holds them."""
-        cells = dict.fromkeys(("u", "w", "phi", "content"), (self.n,))  # [m/s], [m/s], [-], [m]
-        faces = dict.fromkeys(("tau", "nu_t"), (self.n + 1,))  # [Pa], [m2/s]
-        return {**cells, **faces, "z_surface": (), "gradient": ()}  # [m], [Pa/m]
+    def account(self, found: Mapping[str, Any]) -> str:
+        """What is said at the end of a run of the numbers in its summary."""
+        return (
+            f"{found['exchanges']} exchanges with grains, the last after {found['steps_between']} steps; "
+            f"discharge {found['discharge']:.3g} m2/s; stress at the bottom of the column "
+            f"{found['bed_stress']:.3g} Pa; momentum imbalance {found['momentum_residual']:.1e} "
+            "of the largest term"
+        )
+
+    @property
+    def places(self) -> dict[str, int]:
+        """Cells of the column, and the faces between and around them."""
+        return {"cell": self.n, "face": self.n + 1}
+
+    def fields(self) -> dict[str, Field]:
+        """What a run folder keeps of the water at a frame."""
+        return {
+            "u": Field("m/s", ("cell",)),  # speed along the bed
+            "w": Field("m/s", ("cell",)),  # and upwards
+            "phi": Field("-", ("cell",)),  # concentration of grains, fixed ones included
+            "content": Field("m", ("cell",)),  # water in a cell per area of bed
+            "tau": Field("Pa", ("face",)),  # shear stress of the water; the bed's is the first
+            "nu_t": Field("m2/s", ("face",)),  # eddy viscosity
+            "z_surface": Field("m"),  # height of the surface
+            "gradient": Field("Pa/m"),  # -dp/dx that drives the water in addition to gravity
+        }
+
+    def tilted(self, g_x: float, g_z: float) -> "Column":
+        """The same column with another gravity along the bed [m/s2]."""
+        del g_z
+        return replace(self, g_x=g_x)
 
     def first_surface(self, x: Floats) -> Floats:
         """Height of the surface at the start at places along x [m], same shape."""
@@ -144,14 +174,14 @@ class WaterState(ByShape):
     It includes the values that the grains use during the next coupling interval, so that a resume is exact.
     """
 
-    u: Floats  # velocity along the bed [m/s], shape (n,)
-    w: Floats  # vertical velocity of the water from eps w + phi w_p = 0 [m/s], shape (n,)
-    content: Floats  # water per area of bed in each cell [m], shape (n,)
-    shear: Floats  # dU/dz at the cell centres [1/s], shape (n,)
-    du_dt: Floats  # acceleration of the water, DU/Dt [m/s2], shape (n,)
-    dtau_dz: Floats  # gradient of the shear stress of the water [N/m3], shape (n,)
-    tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the first is that at the bed
-    nu_t: Floats  # eddy viscosity at the faces [m2/s], shape (n + 1,)
+    u: Annotated[Floats, "cell"]  # velocity along the bed [m/s]
+    w: Annotated[Floats, "cell"]  # vertical velocity of the water from eps w + phi w_p = 0 [m/s]
+    content: Annotated[Floats, "cell"]  # water per area of bed in each cell [m]
+    shear: Annotated[Floats, "cell"]  # dU/dz at the cell centres [1/s]
+    du_dt: Annotated[Floats, "cell"]  # acceleration of the water, DU/Dt [m/s2]
+    dtau_dz: Annotated[Floats, "cell"]  # gradient of the shear stress of the water [N/m3]
+    tau: Annotated[Floats, "face"]  # shear stress of the water [Pa]; the first is that at the bed
+    nu_t: Annotated[Floats, "face"]  # eddy viscosity at the faces [m2/s]
     z_surface: float  # height of the surface [m]
     volume: float  # water per area of bed [m], constant with SurfaceRule.VOLUME
     gradient: float = 0.0  # -dp/dx of the driver [Pa/m]
@@ -179,6 +209,37 @@ class WaterState(ByShape):
             z_surface=column.z_surface,
             volume=float(content.sum()),
         )
+
+
+@dataclass(frozen=True, repr=False)
+class CouplingState(ByShape):
+    """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
+
+    Attributes
+    ----------
+    water : water since the last exchange.
+    z : heights of the free grains at the last exchange [m], for their volumes in the cells, shape (n_grain,).
+    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n,).
+    steps : steps of the engine in the present coupling interval.
+    due : step of the next exchange.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum of the water over its largest term so far [-].
+    eddies : present eddies of the grains; None without fluctuations.
+    """
+
+    water: WaterState
+    z: Annotated[Floats, "grain"]
+    force_z: Annotated[Floats, "cell"]
+    steps: int
+    due: int
+    exchanges: int
+    worst: float
+    eddies: Eddies | None = None
+
+    def fault(self, touched: int) -> str:
+        """Why this is no state of a column that so many grains touch; "" where it is one."""
+        del touched
+        return "a negative eddy viscosity" if (self.water.nu_t < 0.0).any() else ""
 
 
 @dataclass(frozen=True)

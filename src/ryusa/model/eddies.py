@@ -1,8 +1,10 @@
 """State of the random walk of the grains through turbulence."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.model.arrays import Floats
 
@@ -19,6 +21,6 @@ class Eddies:
     count : number of eddies that the grain has left, the index of the present one, shape (n_grain,), int64.
     """
 
-    r: Floats
-    spent: Floats
-    count: np.ndarray
+    r: Annotated[Floats, "grain", 3]
+    spent: Annotated[Floats, "grain"]
+    count: Annotated[NDArray[np.int64], "grain"]

@@ -1,12 +1,11 @@
 """Exchange between water and grains: the water at every grain, and the impulse on it."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from ryusa.model.arrays import Floats
-from ryusa.model.column import WaterState
-from ryusa.model.eddies import Eddies
 from ryusa.printed import ByShape
 
 # Columns of `FluidAtGrains.sampled`.
@@ -31,13 +30,13 @@ class FluidAtGrains(ByShape):
 
     Attributes
     ----------
-    sampled : water at each grain, columns as above, shape (n_grain, N_SAMPLED).
+    sampled : water at each grain, columns as above.
     impulse : impulse of drag, lift, Magnus force and added mass on each grain since `sampled` was set [N s],
-        taken from the water; then drag over slip in the last step [N s/m]; shape (n_grain, N_IMPULSE).
+        taken from the water; then drag over slip in the last step [N s/m].
     """
 
-    sampled: Floats
-    impulse: Floats
+    sampled: Annotated[Floats, "grain", N_SAMPLED]
+    impulse: Annotated[Floats, "grain", N_IMPULSE]
 
     @staticmethod
     def at_rest(n_grain: int) -> "FluidAtGrains":
@@ -45,29 +44,3 @@ class FluidAtGrains(ByShape):
         sampled = np.zeros((n_grain, N_SAMPLED))
         sampled[:, SUBMERGED] = 1.0
         return FluidAtGrains(sampled, np.zeros((n_grain, N_IMPULSE)))
-
-
-@dataclass(frozen=True, repr=False)
-class CouplingState(ByShape):
-    """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
-
-    Attributes
-    ----------
-    water : water since the last exchange.
-    z : heights of the free grains at the last exchange [m], for their volumes in the cells, shape (n_grain,).
-    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n,).
-    steps : steps of the engine in the present coupling interval.
-    due : step of the next exchange.
-    exchanges : number of exchanges so far.
-    worst : largest residual of the momentum of the water over its largest term so far [-].
-    eddies : present eddies of the grains; None without fluctuations.
-    """
-
-    water: WaterState
-    z: Floats
-    force_z: Floats
-    steps: int
-    due: int
-    exchanges: int
-    worst: float
-    eddies: Eddies | None = None

@@ -1,9 +1,10 @@
 """A row of water columns along a stream: its fixed properties, its ends, and its state."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
 from ryusa.model.course import Course
 from ryusa.model.eddies import Eddies
+from ryusa.model.flow import Field, Flow
 from ryusa.model.row_energy import N_ROW_TERM
 from ryusa.printed import ByShape
 
@@ -84,7 +86,7 @@ class RowDam:
 
 
 @dataclass(frozen=True, repr=False)
-class ColumnRow(ByShape):
+class ColumnRow(Flow):
     """Fixed properties of a row of n_segment segments; without ends it is periodic."""
 
     column: Column  # of each station, its heights measured from the bottom
@@ -149,6 +151,22 @@ class ColumnRow(ByShape):
         """What it is, in words."""
         return f"a row of {self.n_segment} columns of {self.column.n} cells of water"
 
+    def account(self, found: Mapping[str, Any]) -> str:
+        """What is said at the end of a run of the numbers in its summary."""
+        courant = f"Courant number at most {found['courant']:.2g}; per width {found['volume']:.4g} m2 in it"
+        first = f"discharge {found['discharge_first']:.4g} m2/s"
+        end = f"momentum imbalance {found['momentum_residual']:.1e} of the largest term"
+        if found["grains"]:
+            return (
+                f"{found['exchanges']} exchanges with grains in a row of columns, the last after "
+                f"{found['steps_between']} steps; {courant}; {first}; {end}"
+            )
+        return (
+            f"{found['steps']} steps of a row, {courant}, {found['entered']:.4g} m2 entered and "
+            f"{found['left']:.4g} m2 left; {first} upstream and "
+            f"{found['discharge_last']:.4g} m2/s downstream; {end}"
+        )
+
     def segment_at(self, x: Floats) -> Ints:
         """Number of the segment at places along x [m], beyond an end of that there, same shape."""
         return np.clip(np.floor((x - self.x_low) / self.dx), 0, self.n_segment - 1).astype(np.int64)
@@ -157,26 +175,45 @@ class ColumnRow(ByShape):
         """Height of the surface at the start at places along x [m], same shape; -inf if not given."""
         return np.full(x.shape, -np.inf) if self.start is None else self.start[self.segment_at(x)]
 
-    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the datasets of a frame of this row, as a run folder holds them."""
-        segments, stations, n = self.n_segment, len(self.x_station), self.column.n
-        return {
-            "surface": (segments,), "volume": (segments,), "content": (segments, n), "phi": (segments, n),
-            "discharge": (stations,), "passed": (stations,), "tau": (stations,), "u": (stations, n),
-            "w": (stations, n), "energy": (N_ROW_TERM,),
-        }  # fmt: skip
+    @property
+    def floor(self) -> Floats:
+        """Height of the bottom, or of the top of solid cells on it [m], shape (n_segment,)."""
+        return self.bottom if self.solid is None else self.bottom + self.solid * self.column.dz
 
-    def state_shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a `RowState` of this row."""
-        n, stations = self.column.n, len(self.x_station)
-        segments = self.n_segment + (0 if self.periodic else 2)
-        more = {} if self.hydrostatic else {"w": (segments, n + 1), "pressure": (segments, n)}
-        return {
-            "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
-            "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
-            "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
-            "energy": (N_ROW_TERM,),
-        } | more  # fmt: skip
+    @property
+    def places(self) -> dict[str, int]:
+        """Segments from upstream on, stations between them, cells and faces of each; terms of `RowTerm`.
+
+        Beyond each open end lies one segment that is filled as well.
+        """
+        n, segments = self.column.n, self.n_segment
+        along = {"segment": segments, "filled": segments + 2 * (not self.periodic)}
+        return {**along, "station": len(self.x_station), "cell": n, "face": n + 1, "term": N_ROW_TERM}
+
+    def fields(self) -> dict[str, Field]:
+        """What a run folder keeps of the water at a frame."""
+        own = (
+            {}
+            if self.hydrostatic
+            else {
+                "pressure": Field(
+                    "Pa", ("segment", "cell")
+                ),  # beyond the hydrostatic one, below the surface's cell
+                "w_faces": Field("m/s", ("segment", "face")),  # vertical speed of the water
+            }
+        )
+        return own | {
+            "surface": Field("m", ("segment",)),  # its height; that of the bottom where it is dry
+            "volume": Field("m", ("segment",)),  # water per area
+            "content": Field("m", ("segment", "cell")),  # the part in each cell
+            "phi": Field("-", ("segment", "cell")),  # concentration of grains, fixed ones included
+            "discharge": Field("m2/s", ("station",)),  # what passed in the last step of the water, per width
+            "passed": Field("m2", ("station",)),  # what has passed since the start, per width
+            "tau": Field("Pa", ("station",)),  # shear stress of the water at the bottom
+            "u": Field("m/s", ("station", "cell")),  # speed along x
+            "w": Field("m/s", ("station", "cell")),  # and upwards
+            "energy": Field("J/m", ("term",)),  # energy account since the start, per width
+        }
 
     def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
         """The same row with another gravity along and normal to the x axis [m/s2]."""
@@ -299,21 +336,21 @@ class RowState(ByShape):
     last step at every station, as `momentum_balance` writes them.
     """
 
-    u: Floats  # speed along x at the stations [m/s], shape (n_station, n)
-    volume: Floats  # water per area of a segment [m], shape (n_all,)
-    content: Floats  # the part in each cell [m], shape (n_all, n)
-    wet: Floats  # wet thickness of each cell [m], shape (n_all, n)
-    surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_all,)
-    passed: Floats  # water that has passed each station since the start [m2], shape (n_station,)
-    profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
-    edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
-    budgets: Floats  # momentum budget, shape (n_station, N_OUT)
+    u: Annotated[Floats, "station", "cell"]  # speed along x at the stations [m/s]
+    volume: Annotated[Floats, "filled"]  # water per area of a segment [m]
+    content: Annotated[Floats, "filled", "cell"]  # the part in each cell [m]
+    wet: Annotated[Floats, "filled", "cell"]  # wet thickness of each cell [m]
+    surface: Annotated[Floats, "filled"]  # height of the surface above the bottom, plus z_low [m]
+    passed: Annotated[Floats, "station"]  # water that has passed each station since the start [m2]
+    profiles: Annotated[Floats, "station", 6, "cell"]  # u, w, content, shear, du_dt, dtau_dz
+    edges: Annotated[Floats, "station", 2, "face"]  # stress [Pa] and eddy viscosity [m2/s] at the faces
+    budgets: Annotated[Floats, "station", N_BUDGET]  # momentum budget
     # energy account since the start [J/m], indexed by RowTerm
-    energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
-    # with a pressure of its own: vertical speed at the faces [m/s], shape (n_all, n + 1), and pressure beyond
-    # the hydrostatic one over density in the cells below that of the surface [m2/s2], shape (n_all, n)
-    w: Floats = field(default_factory=lambda: np.zeros((0, 0)))
-    pressure: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    energy: Annotated[Floats, "term"] = field(default_factory=lambda: np.zeros(N_ROW_TERM))
+    # with a pressure of its own: vertical speed at the faces [m/s], and pressure beyond the hydrostatic one
+    # over density, in the cells below that of the surface [m2/s2]
+    w: Annotated[Floats, "filled", "face"] | None = None
+    pressure: Annotated[Floats, "filled", "cell"] | None = None
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done
     courant: float = 0.0  # largest Courant number met [-]
@@ -332,10 +369,10 @@ class RowGrainState(ByShape):
     eddies : present eddies of the grains; None without fluctuations.
     """
 
-    x: Floats
-    w: Floats
-    force_z: Floats
-    u: Floats
+    x: Annotated[Floats, "grain", 3]
+    w: Annotated[Floats, "filled", "cell"]
+    force_z: Annotated[Floats, "filled", "cell"]
+    u: Annotated[Floats, "station", "cell"]
     eddies: Eddies | None = None
 
 
@@ -359,5 +396,12 @@ class RowCouplingState(ByShape):
     due: int
     exchanges: int
     worst: float
-    passing: Floats
+    passing: Annotated[Floats, "station"]
     grains: RowGrainState | None = None
+
+    def fault(self, touched: int) -> str:
+        """Why this is no state of a row that so many grains touch; "" where it is one."""
+        water = self.water
+        if min(water.volume.min(), water.content.min(), water.wet.min()) < 0.0:
+            return "a negative amount of water"
+        return "a row of water without its grains" if touched and self.grains is None else ""

@@ -31,6 +31,7 @@ from ryusa.laws.families import (
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
 from ryusa.model.feeds import Traffic
+from ryusa.model.flow import Flow
 from ryusa.model.rigid_bodies import RigidBodies
 from ryusa.model.row import ColumnRow
 from ryusa.model.walls import Walls
@@ -188,7 +189,7 @@ class Scene(ByShape):
     rolling: RollingLaw = field(default_factory=RollingLaw)
     rotation: bool = True  # False: spin locked at zero
     water: Water = field(default_factory=Water)
-    column: Column | None = None  # with profile COLUMN
+    flow: Flow | None = None  # what the water that feels the grains moves in, with profile COLUMN
     traffic: Traffic | None = None  # feeds and exits; None: the grains are always the same
     # space
     plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z are constant
@@ -206,7 +207,6 @@ class Scene(ByShape):
     walls: Walls | None = None  # finite walls, at rest or moving
     materials: Materials | None = None  # None: all contacts are those of `contact` and `rolling`
     bodies: RigidBodies | None = None  # clumps, whose spheres are free grains
-    row: ColumnRow | None = None  # columns of water along the stream; then `column` is None
 
     @property
     def n_grain(self) -> int:
@@ -260,9 +260,14 @@ class Scene(ByShape):
         return ball
 
     @property
-    def flow(self) -> Column | ColumnRow | None:
-        """What the water that feels the grains moves in; None where no water does."""
-        return self.column if self.row is None else self.row
+    def column(self) -> Column | None:
+        """The flow, if it is one column of water."""
+        return self.flow if isinstance(self.flow, Column) else None
+
+    @property
+    def row(self) -> ColumnRow | None:
+        """The flow, if it is columns of water along the stream."""
+        return self.flow if isinstance(self.flow, ColumnRow) else None
 
     @property
     def coupled(self) -> bool:

@@ -23,11 +23,10 @@ from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
-from ryusa.results.lazy import Part
+from ryusa.results.lazy import Part, read_frames
 from ryusa.results.place import refuse_other
-from ryusa.results.row import RowFrames, read_row
 from ryusa.results.scene_file import read_scene
-from ryusa.results.water import WaterFrames, read_water
+from ryusa.results.water import WaterFrames
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
@@ -160,16 +159,21 @@ class RunArrays:
         return np.concatenate([np.zeros((0, *shape)), *rows])
 
     @cached_property
+    def fluid(self) -> WaterFrames | None:
+        """Fields of the water at every frame, whatever its kind; None if none feels the grains."""
+        if (flow := self.scene.flow) is None:
+            return None
+        return WaterFrames(flow, self.frames.t, **read_frames(self._parts, flow.GROUP, flow.frame_shapes()))
+
+    @property
     def water(self) -> WaterFrames | None:
         """Profiles of the water at every frame; None if the run has no water column."""
-        column = self.scene.column
-        return None if column is None else read_water(self._parts, self.frames.t, column)
+        return None if self.scene.column is None else self.fluid
 
-    @cached_property
-    def row(self) -> RowFrames | None:
+    @property
+    def row(self) -> WaterFrames | None:
         """Water of a row of columns at every frame; None if the run has none."""
-        row = self.scene.row
-        return None if row is None else read_row(self._parts, self.frames.t, row)
+        return None if self.scene.row is None else self.fluid
 
     @property
     def grains(self) -> Grains:

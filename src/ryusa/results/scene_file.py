@@ -4,19 +4,19 @@ import hashlib
 import json
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, get_origin, get_type_hints
+from typing import Any, get_origin
 
 import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
-from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
+from ryusa.model import ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.feeds import NONE, Arrivals, Traffic
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
 from ryusa.model.walls import N_MOTION, N_RIGID, N_SERVO
+from ryusa.results.flow_file import FLOW_ARRAYS, ROW, flow_arrays, flow_from, flow_scalars, numbers_of
 from ryusa.results.hdf5 import opened, read_dataset
-from ryusa.results.row_file import ROW, dataset_names, row_arrays, row_from, row_scalars
 
 _TRAFFIC, _MATERIALS = (
     "traffic",
@@ -26,7 +26,7 @@ _BODIES = "bodies"
 _ARRIVALS = "arrivals"
 _OF_ARRIVALS = tuple(f.name for f in fields(Arrivals) if f.name != "feed")
 _OF_BODIES = tuple(f.name for f in fields(RigidBodies) if f.name != "names")
-_LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
+_LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
@@ -43,7 +43,7 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
     for name in _datasets_of_bodies(scene.bodies):
         file.create_dataset(f"{_BODIES}/{name}", data=getattr(scene.bodies, name))
-    for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
+    for name, array in flow_arrays(scene.flow).items():
         file.create_dataset(f"{ROW}/{name}", data=array)
     for name, array in _arrays_of_arrivals(scene.traffic).items():
         file.create_dataset(f"{_ARRIVALS}/{name}", data=array)
@@ -58,10 +58,10 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for f in fields(Scene):
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
-            if f.name in {_TRAFFIC, _MATERIALS, _BODIES, ROW} and value is None:
+            if f.name == "flow":
+                found |= flow_scalars(value)
                 continue
-            if f.name == ROW:  # its arrays are datasets
-                found[ROW] = row_scalars(value)
+            if f.name in {_TRAFFIC, _MATERIALS, _BODIES} and value is None:
                 continue
             if f.name == _BODIES:  # its arrays are datasets
                 found[_BODIES] = list(value.names)
@@ -130,7 +130,7 @@ def scene_digest(scene: Scene) -> str:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
     for name in _datasets_of_bodies(scene.bodies):
         digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
-    for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
+    for name, array in flow_arrays(scene.flow).items():
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
     for name, array in _arrays_of_arrivals(scene.traffic).items():
@@ -168,10 +168,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             for name in _OF_BODIES
             if _BODIES in file and (name != "drag_form" or f"{_BODIES}/{name}" in file)
         }
-        in_row = {
-            name: read_dataset(file, f"{ROW}/{name}", path)
-            for name in dataset_names()
-            if f"{ROW}/{name}" in file
+        of_flow = {
+            name: read_dataset(file, f"{ROW}/{name}", path) for name in FLOW_ARRAYS if f"{ROW}/{name}" in file
         }
         listed = {
             name: read_dataset(file, f"{_ARRIVALS}/{name}", path)
@@ -183,17 +181,14 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             raise ValueError("its scalars are not text")
         scalars = json.loads(raw.tobytes())
         step, t = int(scalars.pop("step")), float(scalars.pop("t"))
-        laws = {
-            name: _law(kind, raw) for name, kind in _LAWS.items() if (raw := scalars.pop(name)) is not None
-        }
+        laws = {name: numbers_of(kind, scalars.pop(name)) for name, kind in _LAWS.items()}
         if _TRAFFIC in scalars:
             scalars[_TRAFFIC] = _traffic(scalars[_TRAFFIC], listed)
         if _MATERIALS in scalars:
             scalars[_MATERIALS] = _materials(of, scalars[_MATERIALS])
         if (forms := scalars.pop(_BODIES, None)) is not None:
             scalars[_BODIES] = _bodies(bodies, forms, len(arrays["d"]))
-        if (given := scalars.pop(ROW, None)) is not None:
-            scalars[ROW] = row_from(given, in_row, _law(Column, given["column"]))
+        scalars["flow"] = flow_from(scalars, of_flow)
         if (names := scalars.pop("walls", None)) is not None:
             scalars["walls"] = _walls(faces, names)
         scalars["events"] = EventRule(scalars["events"])
@@ -213,16 +208,11 @@ def _plain(value: np.generic) -> Any:
     return value.item()
 
 
-def _law(kind: type, raw: dict[str, Any]) -> Any:
-    hints = get_type_hints(kind)
-    return kind(**{name: hints[name](value) for name, value in raw.items()})
-
-
 def _materials(of: np.ndarray, raw: dict[str, Any]) -> Materials:
     """Materials, whose numbers go to compiled code and are therefore checked."""
     names = tuple(str(name) for name in raw["names"])
-    contact = tuple(_law(ContactLaw, one) for one in raw["contact"])
-    rolling = tuple(_law(RollingLaw, one) for one in raw["rolling"])
+    contact = tuple(numbers_of(ContactLaw, one) for one in raw["contact"])
+    rolling = tuple(numbers_of(RollingLaw, one) for one in raw["rolling"])
     if of.dtype != np.int8 or of.ndim != 1 or (len(of) and not 0 <= of.min() <= of.max() < len(names)):
         raise ValueError(f"materials/of holds a number that is not 0 to {len(names) - 1}")
     if len(contact) != len(names) ** 2 or len(rolling) != len(names) ** 2:

@@ -52,8 +52,8 @@ FRAME_DATASETS = {
     "omega": (np.dtype(np.float64), (3,)),  # [rad/s]
     "image": (np.dtype(np.int32), (2,)),  # periods crossed in x and y
 }
-# In a group of a part, if water moves in the run: k frames of what `frame_shapes` of `scene.flow` names.
-# The group is its GROUP.
+# In the group GROUP of `scene.flow`, if water moves in the run: k frames of its `fields`, with their unit and
+# axes as attributes.
 
 # impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
 WALLS = "walls"

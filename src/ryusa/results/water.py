@@ -1,52 +1,50 @@
-"""Profiles of the water column of a run at every frame."""
+"""The water of a run at every frame: fields by their names."""
 
-from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model.column import Column
-from ryusa.results.lazy import Part, read_frames
+from ryusa.model import ColumnRow, Flow
 
 Floats = NDArray[np.float64]
+_OF_FLOW = ("z", "faces", "floor")  # heights [m]
 
 
-@dataclass(frozen=True)
 class WaterFrames:
-    """Profiles of the water at every frame; arrays of shape (n_frame, n) in cells, (n_frame, n + 1) at faces.
+    """Fields of the water at every frame, each an attribute by its name, shape (n_frame, ...).
+
+    Units and places are those of `flow.fields()`, which `repr` lists; `z`, `faces` and `floor` are heights of
+    the flow [m].
 
     Attributes
     ----------
+    flow : what the water moves in, at the start of the run.
     t : times of the frames [s], shape (n_frame,).
-    z, faces : heights of the centres and the faces of the cells [m], shapes (n,) and (n + 1,).
-    u, w : velocity along the bed and upwards [m/s].
-    phi : concentration of grains, fixed ones included [-].
-    content : water in a cell per area of bed [m].
-    tau : shear stress of the water at the faces [Pa]; the bed's is the first.
-    nu_t : eddy viscosity at the faces [m2/s].
-    z_surface : height of the surface [m], shape (n_frame,).
-    gradient : pressure gradient -dp/dx that drives the water in addition to gravity [Pa/m], shape (n_frame,).
     """
 
-    t: Floats
-    z: Floats
-    faces: Floats
-    u: Floats
-    w: Floats
-    phi: Floats
-    content: Floats
-    tau: Floats
-    nu_t: Floats
-    z_surface: Floats
-    gradient: Floats
+    def __init__(self, flow: Flow, t: Floats, **fields: Floats) -> None:
+        self.flow, self.t, self._of = flow, t, fields
 
+    def __getattr__(self, name: str) -> Floats:
+        if name in _OF_FLOW:
+            return getattr(self.flow, name)
+        if name.startswith("_") or name not in self._of:
+            known = ", ".join(vars(self).get("_of", ()))
+            raise AttributeError(f"no '{name}' among the fields of the water: {known}")
+        return self._of[name]
 
-def read_water(parts: list[Part], t: Floats, column: Column) -> WaterFrames:
-    """Read all profiles.
+    @property
+    def row(self) -> ColumnRow:
+        """The flow, of water along a stream."""
+        return cast(ColumnRow, self.flow)
 
-    Raises
-    ------
-    ResultsError : a part has no profiles, or profiles of another shape.
-    """
-    found = read_frames(parts, column.GROUP, column.frame_shapes())
-    return WaterFrames(t=t, z=column.z, faces=column.faces, **found)
+    @property
+    def depth(self) -> Floats:
+        """Depth of the water of a row over its floor [m], shape (n_frame, n_segment)."""
+        return self.surface - self.floor
+
+    def __repr__(self) -> str:
+        fields = self.flow.fields().items()
+        said = ", ".join(f"{name} [{one.unit}] {' '.join(one.at)}".rstrip() for name, one in fields)
+        return f"WaterFrames({len(self.t)} of {self.flow.text}: {said})"

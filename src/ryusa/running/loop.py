@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
-from ryusa.model import CouplingState, RowCouplingState, Scene, State
+from ryusa.model import Scene, Snapshot, State
 from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
@@ -105,7 +105,7 @@ class Loop:
                     action()
             raise
         self.progress.line(f"{self.status}: {self.message}")
-        for line in summary_lines(self._retry_when_full(self._close)):
+        for line in summary_lines(self._retry_when_full(self._close), self.scene.flow):
             self.progress.line(line)
         if self.checkpoints is not None and self.status == schema.COMPLETE:
             self.checkpoints.remove_earlier()
@@ -290,7 +290,7 @@ class Loop:
         state, water = self.engine.state(), self._water_now()
         return state if water is None else replace(state, coupling=water)
 
-    def _water_now(self) -> CouplingState | RowCouplingState | None:
+    def _water_now(self) -> Snapshot | None:
         return None if self._water is None else snapshot(self.engine, self._water)
 
     def _chunk(self) -> int:

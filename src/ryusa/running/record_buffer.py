@@ -138,6 +138,9 @@ class RecordBuffer:
             for piece in self._contacts:
                 contacts[begin : begin + len(piece)] = piece
                 begin += len(piece)
+        if (flow := self._scene.flow) is not None and self.n_frame:
+            for name, field in flow.fields().items():
+                file[f"{flow.GROUP}/{name}"].attrs.update(unit=field.unit, axes=("frame", *field.at))
 
     def extend(self, rows: Mapping[str, NDArray[Any]]) -> None:
         """Add the content of another buffer, as its `rows` give it."""

@@ -5,34 +5,22 @@ The restored arrays go to compiled code without bounds checks: an id out of rang
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from types import UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, GivesPieces
 from ryusa.errors import CheckpointError
-from ryusa.model import (
-    BodyState,
-    ColumnRow,
-    Contacts,
-    CouplingState,
-    EngineBlock,
-    FluidAtGrains,
-    RowCouplingState,
-    RowGrainState,
-    RowState,
-    Scene,
-    State,
-)
-from ryusa.model.column import WaterState
+from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, Scene, Snapshot, State
+from ryusa.model.arrays import Floats
 from ryusa.model.contacts import N_EVENT, N_STATE
-from ryusa.model.eddies import Eddies
-from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.rows import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.water.kinds import KINDS
 
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
@@ -49,7 +37,7 @@ _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
 
 
-def engine_block(engine: Engine, coupling: CouplingState | RowCouplingState | None) -> CheckpointBlock:
+def engine_block(engine: Engine, coupling: Snapshot | None) -> CheckpointBlock:
     """The state of an engine, and of its water, as a block; arrays piece by piece where it gives them so."""
     state, rows = engine.state_in_pieces() if isinstance(engine, GivesPieces) else (engine.state(), ())
     return state_block(state if coupling is None else replace(state, coupling=coupling), rows)
@@ -142,15 +130,16 @@ class _Reader:
             image=self._array("image", (len(image) and n, 2), _INT32),
             contacts=self._contacts(),
             tally=self._tally(),
-            fluid=self._fluid(n) if values.get("fluid") else None,
+            fluid=self._part(FluidAtGrains, "fluid", {"grain": n}) if values.get("fluid") else None,
             coupling=self._coupling(n) if values.get("coupling") else None,
             bodies=self._bodies(present) if values.get("bodies") else None,
             engine=self._engine(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
             raise ValueError(f"'{unknown[0]}' is unknown to this version of ryusa")
-        if self._scene.column is not None and (state.coupling is None) != (state.fluid is None):
-            raise ValueError("a column of water without the water at its grains, or the reverse")
+        touched = self._scene.flow is not None and n + self._scene.n_fixed
+        if touched and (state.coupling is None) != (state.fluid is None):
+            raise ValueError("water without the water at its grains, or the reverse")
         return state
 
     def _contacts(self) -> Contacts:
@@ -189,77 +178,36 @@ class _Reader:
             found[name] = int(found[name])
         return Tally(**found)
 
-    def _fluid(self, n: int) -> FluidAtGrains:
-        return FluidAtGrains(
-            self._floats("fluid/sampled", (n, N_SAMPLED)), self._floats("fluid/impulse", (n, N_IMPULSE))
-        )
+    def _coupling(self, n: int) -> Snapshot:
+        if (flow := self._scene.flow) is None:
+            raise ValueError("water, but the scene has none")
+        found: Snapshot = self._part(KINDS[type(flow)].state, "coupling", {**flow.places, "grain": n})
+        if not 1 <= found.steps < _LATEST or not int(self._values["step"]) < found.due < _LATEST:
+            raise ValueError(f"{found.steps} steps between exchanges, the next at step {found.due}")
+        if fault := found.fault(n + self._scene.n_fixed):
+            raise ValueError(fault)
+        return found
 
-    def _coupling(self, n: int) -> CouplingState | RowCouplingState:
-        if self._scene.row is not None:
-            return self._row(self._scene.row, n)
-        column, values = self._scene.column, self._values
-        if column is None:
-            raise ValueError("water, but the scene has no column")
-        cells = {name: (column.n,) for name in ("u", "w", "content", "shear", "du_dt", "dtau_dz")}
-        cells |= {name: (column.n + 1,) for name in ("tau", "nu_t")}
-        profiles: dict[str, Any] = {
-            name: self._floats(f"coupling/water/{name}", shape) for name, shape in cells.items()
-        }
-        if (profiles["nu_t"] < 0.0).any():
-            raise ValueError("a negative eddy viscosity")
-        steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
-        if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
-            raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
-        return CouplingState(
-            water=WaterState(
-                **profiles,
-                z_surface=float(values["coupling/water/z_surface"]),
-                volume=float(values["coupling/water/volume"]),
-                gradient=float(values["coupling/water/gradient"]),
-                t=float(values["coupling/water/t"]),
-                step=int(values["coupling/water/step"]),
-            ),
-            z=self._floats("coupling/z", (n,)),
-            force_z=self._floats("coupling/force_z", (column.n,)),
-            steps=steps,
-            due=due,
-            exchanges=exchanges,
-            worst=float(values["coupling/worst"]),
-            eddies=self._eddies("coupling/eddies", n),
-        )
-
-    def _row(self, row: ColumnRow, n: int) -> RowCouplingState:
-        values, about = self._values, "coupling/water"
-        shapes = row.state_shapes()
-        arrays = {name: self._floats(f"{about}/{name}", shape) for name, shape in shapes.items()}
-        if min(arrays["volume"].min(), arrays["content"].min(), arrays["wet"].min()) < 0.0:
-            raise ValueError("a negative amount of water")
-        steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
-        if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
-            raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
-        passing = self._floats("coupling/passing", shapes["passed"])
-        state = RowState(
-            **arrays, t=float(values[f"{about}/t"]), steps=int(values[f"{about}/steps"]),
-            courant=float(values[f"{about}/courant"]),
-        )  # fmt: skip
-        grains, about = None, "coupling/grains"
-        if values.get(about):
-            two = {name: self._floats(f"{about}/{name}", shapes["content"]) for name in ("w", "force_z")}
-            x = self._positions(f"{about}/x", n)
-            u = self._floats(f"{about}/u", shapes["u"])
-            grains = RowGrainState(x, **two, u=u, eddies=self._eddies(f"{about}/eddies", n))
-            if not values.get("fluid"):
-                raise ValueError("a row of water without the water at its grains")
-        elif len(self._scene.d_fixed) + n:
-            raise ValueError("a row of water without its grains")
-        worst = float(values["coupling/worst"])
-        return RowCouplingState(state, steps, due, exchanges, worst, passing, grains)
-
-    def _eddies(self, about: str, n: int) -> Eddies | None:
-        if not self._values.get(about):
-            return None
-        r, spent = self._floats(f"{about}/r", (n, 3)).copy(), self._floats(f"{about}/spent", (n,)).copy()
-        return Eddies(r, spent, self._array(f"{about}/count", (n,), _INT).copy())
+    def _part(self, kind: type[Any], about: str, places: Mapping[Any, int]) -> Any:
+        """A part of the state of the water, as `_flatten` has named its numbers, arrays and parts."""
+        given: dict[str, Any] = {}
+        for name, hint in get_type_hints(kind, include_extras=True).items():
+            key = f"{about}/{name}"
+            or_none = isinstance(hint, UnionType) or get_origin(hint) is Union
+            one = get_args(hint)[0] if or_none else hint
+            of, *axes = get_args(one) or (one,)
+            shape = tuple(places.get(axis, axis) for axis in axes)
+            if or_none and not self._values.get(key) and key not in self._arrays:
+                given[name] = None
+            elif isinstance(of, type) and is_dataclass(of):
+                given[name] = self._part(of, key, places)
+            elif of in {int, float}:
+                given[name] = of(self._values[key])
+            elif name == "x":
+                given[name] = self._positions(key, shape[0])
+            else:
+                given[name] = self._floats(key, shape) if of == Floats else self._array(key, shape, _INT)
+        return kind(**given)
 
     def _bodies(self, present: NDArray[np.bool_]) -> BodyState:
         if (bodies := self._scene.bodies) is None:

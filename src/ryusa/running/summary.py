@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ryusa.model import Flow
 from ryusa.running.energy_terms import energy_lines
 
 _WORTH_SAYING = 0.05  # [s] of compiling
@@ -12,11 +13,12 @@ _WAYS = {  # of impacts, by what the summary calls them, and what is to be said 
 }
 
 
-def summary_lines(summary: dict[str, Any]) -> list[str]:
-    """Largest overlap, steps per contact, restitution, energy account, warnings."""
+def summary_lines(summary: dict[str, Any], flow: Flow | None = None) -> list[str]:
+    """Largest overlap, steps per contact, restitution, energy, warnings; of the water in what it flows."""
     recorded = summary.get("events") != "none"
+    water = [] if flow is None else [f"water: {flow.account(summary['water'])}"]
     if summary.get("water", {}).get("grains") == 0:
-        return _of_water(summary)
+        return _of_water(summary, water)
     contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded"
     lines = [
         f"{summary['steps']} steps, {summary['frames']} frames, {contacts}: {_took(summary)} "
@@ -29,8 +31,7 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
     lines += [f"{headings.get(name, name)}: {text}" for name, text in energy_lines(summary["energy"])]
     if "traffic" in summary:
         lines.append(_traffic(summary["traffic"]))
-    if "water" in summary:
-        lines.append(_water(summary["water"]))
+    lines += water
     if "precision" in summary:
         lines.append(f"precision: {summary['precision']['text']}")
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
@@ -43,10 +44,10 @@ def _took(summary: dict[str, Any]) -> str:
     return f"{before}stepped and recorded {summary['wall'] - compiled:.1f} s"
 
 
-def _of_water(summary: dict[str, Any]) -> list[str]:
+def _of_water(summary: dict[str, Any], water: list[str]) -> list[str]:
     """Lines of a run without a grain."""
     done = f"{summary['steps']} steps, {summary['frames']} frames: {_took(summary)}"
-    return [done, _water(summary["water"]), *(f"warning: {warning}" for warning in summary["warnings"])]
+    return [done, *water, *(f"warning: {warning}" for warning in summary["warnings"])]
 
 
 def _contacts(summary: dict[str, Any]) -> list[str]:
@@ -72,30 +73,6 @@ def _traffic(found: dict[str, Any]) -> str:
     feeds = [f"{one['entered']} in by '{one['name']}'" for one in found["feeds"]]
     exits = [f"{one['left']} out by '{one['name']}'" for one in found["exits"]]
     return f"grains: {', '.join([*feeds, *exits])}; {found['present']} there at the end"
-
-
-def _water(found: dict[str, Any]) -> str:
-    if "courant" in found and found["grains"]:
-        return (
-            f"water: {found['exchanges']} exchanges with grains in a row of columns, the last after "
-            f"{found['steps_between']} steps; Courant number at most {found['courant']:.2g}; per width "
-            f"{found['volume']:.4g} m2 in it; discharge {found['discharge_first']:.4g} m2/s; momentum "
-            f"imbalance {found['momentum_residual']:.1e} of the largest term"
-        )
-    if "courant" in found:
-        return (
-            f"water: {found['steps']} steps of a row, Courant number at most {found['courant']:.2g}; "
-            f"per width {found['volume']:.4g} m2 in it, {found['entered']:.4g} m2 entered and "
-            f"{found['left']:.4g} m2 left; discharge {found['discharge_first']:.4g} m2/s upstream and "
-            f"{found['discharge_last']:.4g} m2/s downstream; momentum imbalance "
-            f"{found['momentum_residual']:.1e} of the largest term"
-        )
-    return (
-        f"water: {found['exchanges']} exchanges with grains, the last after {found['steps_between']} steps; "
-        f"discharge {found['discharge']:.3g} m2/s; stress at the bottom of the column "
-        f"{found['bed_stress']:.3g} Pa; momentum imbalance {found['momentum_residual']:.1e} "
-        "of the largest term"
-    )
 
 
 def _band(summary: dict[str, Any]) -> str:

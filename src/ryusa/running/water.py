@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
-from ryusa.model import CouplingState, RowCouplingState, Scene, State
+from ryusa.model import Scene, Snapshot, State
 from ryusa.model.arrays import Floats
 from ryusa.water.coupling import Coupling
+from ryusa.water.kinds import KINDS
 from ryusa.water.processes import SharingProcesses
 from ryusa.water.protocol import Fluid
-from ryusa.water.row_coupling import RowCoupling
 
 
 def started(scene: Scene, engine: Engine, state: State, step: int, threads: int = 1) -> Fluid | None:
@@ -29,49 +29,25 @@ def started(scene: Scene, engine: Engine, state: State, step: int, threads: int 
     if scene.flow is None:
         return None
     found, told = state.coupling, None if state.fluid is None else state.fluid.sampled
-    if isinstance(engine, SharesColumn) and scene.column is not None:
-        assert not isinstance(found, RowCouplingState)
+    if isinstance(engine, SharesColumn):
         return engine.couple(partial(_in_process, step, found), told=found is not None)
+    kind = KINDS[type(scene.flow)].fluid
     if found is not None:
-        return _resumed(scene, found, told, threads)
-    water = _begun(scene, engine.kinematics()[0], step, threads)
+        return kind.resume(scene, scene.flow, found, told, threads)
+    water = kind.begin(scene, scene.flow, engine.kinematics()[0], step, threads)
     engine.set_fluid(water.sampled)
     return water
 
 
-def _begun(scene: Scene, x: Floats, step: int, threads: int, **of_process: Any) -> Fluid:
-    """The water of a scene at its first step, among grains at x [m]."""
-    if scene.row is not None:
-        return RowCoupling.begin(scene, scene.row, x, step, threads)
-    column = scene.column
-    assert column is not None
-    return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
-
-
-def _resumed(
-    scene: Scene,
-    found: CouplingState | RowCouplingState,
-    told: Floats | None,
-    threads: int,
-    **of_process: Any,
-) -> Fluid:
-    """The water of a snapshot, with what the grains were told of it."""
-    if isinstance(found, RowCouplingState):
-        assert scene.row is not None
-        return RowCoupling.resume(scene, scene.row, found, told, threads)
-    assert scene.column is not None and told is not None
-    return Coupling.resume(scene, scene.column, scene.column.interval, found, told, **of_process)
-
-
 def _in_process(
-    step: int, found: CouplingState | None, scene: Scene, ids: np.ndarray, x: Floats, sampled: Floats,
+    step: int, found: Any, scene: Scene, ids: np.ndarray, x: Floats, sampled: Floats,
     processes: SharingProcesses | None,
 ) -> Fluid:  # fmt: skip
     """The column for the grains of one of several processes."""
-    of_process: dict[str, Any] = {"ids": ids, "processes": processes}
+    assert scene.column is not None
     if found is not None:
-        return _resumed(scene, found, sampled, 1, **of_process)
-    return _begun(scene, x, step, 1, **of_process)
+        return Coupling.resume(scene, scene.column, found, sampled, ids=ids, processes=processes)
+    return Coupling.begin(scene, scene.column, x, step, ids=ids, processes=processes)
 
 
 def advanced(engine: Engine, water: Fluid | None, step: int, n_steps: int) -> tuple[int, Flags]:
@@ -112,6 +88,6 @@ def changed(engine: Engine, water: Fluid, scene: Scene) -> None:
         water.change(scene)
 
 
-def snapshot(engine: Engine, water: Fluid) -> CouplingState | RowCouplingState:
+def snapshot(engine: Engine, water: Fluid) -> Snapshot:
     """State of the water, for an exact resume."""
     return water.snapshot(engine.kept() if isinstance(engine, SharesColumn) else None)

@@ -11,7 +11,6 @@ from ryusa.laws.dispatch import profile_speed
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
 from ryusa.results import Results
-from ryusa.results.row import RowFrames
 from ryusa.view.encode import Blob
 
 POINTS = 60  # of a profile that is given by a formula
@@ -103,16 +102,20 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
         unbounded. Of a row of columns it is the mean depth above the lowest cell, and the array "line" holds
         the surface in m at the places x, one row per frame; nan where it is dry.
     """
-    column = results.water
-    if results.row is not None:
-        return _mean_of_row(results, results.row, frames, blob)
-    if column is not None:
-        u = np.array(column.u[frames])
-        wet = column.content[frames] / ((1.0 - column.phi[frames]) * np.diff(column.faces))
+    found, line = results.row or results.water, surface_line(results)
+    if found is not None:
+        column, u = (results.scene.column or found.row.column), np.array(found.u[frames])
+        thick = np.diff(column.faces) if line is None else column.dz
+        wet = found.content[frames] / ((1.0 - found.phi[frames]) * thick)
+        if line is not None:  # the mean along the row
+            u, wet = u.mean(axis=1), wet.mean(axis=1)
         u[wet < _HALF] = math.nan
         blob.add("u", u.astype(np.float32))
         blob.add("surface", surfaces(results)[frames].astype(np.float32))
-        return {"z": column.z.tolist(), "solved": True}
+        if line is None:
+            return {"z": column.z.tolist(), "solved": True}
+        blob.add("line", line.z[frames].astype(np.float32))
+        return {"z": column.z.tolist(), "solved": True, "x": line.x.tolist()}
     water = results.scene.water
     if water.profile == Profile.NONE:
         return None
@@ -121,20 +124,6 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     if len(surface := surfaces(results)[:1]):
         blob.add("surface", surface.astype(np.float32))
     return {"z": z.tolist(), "solved": False}
-
-
-def _mean_of_row(results: Results, row: RowFrames, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any]:
-    """The mean along a row of columns, for `flow_of`."""
-    column, among = row.row.column, 1.0 - row.phi[frames]
-    wet = (row.content[frames] / (among * column.dz)).mean(axis=1)
-    u = row.u[frames].mean(axis=1)
-    u[wet < _HALF] = math.nan
-    blob.add("u", u.astype(np.float32))
-    blob.add("surface", surfaces(results)[frames].astype(np.float32))
-    line = surface_line(results)
-    assert line is not None
-    blob.add("line", line.z[frames].astype(np.float32))
-    return {"z": column.z.tolist(), "solved": True, "x": line.x.tolist()}
 
 
 def surfaces(results: Results) -> NDArray[np.float64]:

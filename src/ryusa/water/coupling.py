@@ -28,6 +28,7 @@ from ryusa.water.exchange_arrays import ExchangeArrays, concentration_of_bed
 from ryusa.water.fixed_grains import steady_start
 from ryusa.water.momentum_balance import DONE, GRADIENT, SURFACE
 from ryusa.water.processes import SharingProcesses
+from ryusa.water.protocol import Fluid
 from ryusa.water.solve import budget_of, fault_of, profiles_of, water_of
 
 numbers(__name__, Start.REST, Start.STEADY)
@@ -35,14 +36,13 @@ numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)
 
 
 @dataclass
-class Coupling:
+class Coupling(Fluid):
     """The column of water of a run, and the state of the water at its grains.
 
     Attributes
     ----------
     scene : the scene; its water has the profile COLUMN.
     column : cells, boundaries, driver, closures.
-    longest : largest number of engine steps in an interval.
     steps : steps in the present interval; 1 in the first, where no drag is known yet.
     phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
     sampled : water at the grains as given last, columns of `model.fluid`.
@@ -56,7 +56,6 @@ class Coupling:
 
     scene: Scene
     column: Column
-    longest: int
     steps: int
     phi: Floats
     sampled: Floats
@@ -74,19 +73,20 @@ class Coupling:
 
     @staticmethod
     def begin(
-        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0,
-        ids: Ints | None = None, processes: SharingProcesses | None = None,
+        scene: Scene, column: Column, x: Floats, step: int = 0, threads: int = 1,
+        state: WaterState | None = None, ids: Ints | None = None, processes: SharingProcesses | None = None,
     ) -> "Coupling":  # fmt: skip
         """Cut the grains at x [m], and fill the column with its initial state or with a given one.
 
         Raises
         ------
-        ValueError : the column is not valid, or `longest` is less than 1.
+        ValueError : the column is not valid, or its interval is less than a step.
         WaterError : no steady initial state was found.
         """
+        del threads  # one column has no loops that are worth it
         faults = column.refuses()
-        if faults or longest < 1:
-            raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
+        if faults or column.interval < 1:
+            raise ValueError("; ".join(faults) or f"an interval of {column.interval} steps: at least 1")
         x, _ = _with_those_away(scene, column, x, x)
         phi_bed = concentration_of_bed(scene, column)
         surface = column.z_surface if state is None else state.z_surface
@@ -105,7 +105,7 @@ class Coupling:
         rows, faces, out = profiles_of(now)
         n = len(x)
         coupling = Coupling(
-            scene, column, longest, 1, phi, np.zeros((n, N_SAMPLED)), step + 1, 0, 0.0, arrays, rows, faces,
+            scene, column, 1, phi, np.zeros((n, N_SAMPLED)), step + 1, 0, 0.0, arrays, rows, faces,
             out, (now.volume, now.t, now.step), ids=ids, processes=processes,
         )  # fmt: skip
         if column.fluctuations is Fluctuations.RANDOM_WALK:
@@ -115,7 +115,7 @@ class Coupling:
 
     @staticmethod
     def resume(
-        scene: Scene, column: Column, longest: int, found: CouplingState, sampled: Floats,
+        scene: Scene, column: Column, found: CouplingState, sampled: Floats | None = None, threads: int = 1,
         ids: Ints | None = None, processes: SharingProcesses | None = None,
     ) -> "Coupling":  # fmt: skip
         """Go on from a snapshot; `sampled` is the water at the grains here, columns of `model.fluid`.
@@ -130,9 +130,12 @@ class Coupling:
                 f"{column.n} cells and {scene.n_grain} grains"
             )
         here = slice(None) if ids is None else ids
+        sampled = np.zeros((0, N_SAMPLED)) if sampled is None else sampled
         x = np.zeros((len(sampled), 3))
         x[:, 2] = found.z[here]
-        coupling = Coupling.begin(scene, column, longest, x, found.water, ids=ids, processes=processes)
+        coupling = Coupling.begin(
+            scene, column, x, threads=threads, state=found.water, ids=ids, processes=processes
+        )
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
         coupling.sampled = np.array(sampled)  # one that may be written: read-only arrays would compile anew
@@ -190,11 +193,6 @@ class Coupling:
         """Momentum budget of the water over the last interval; None before the first, and after a resume."""
         return budget_of(self._out) if len(self._out) == step.N_SCALAR else None
 
-    def ends_with(self, after: Scene) -> bool:
-        """No change has to wait for the end of an interval."""
-        del after
-        return False
-
     def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         assert scene.column is not None
@@ -213,17 +211,7 @@ class Coupling:
         self._arrays.force_z[:] = force_z
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
-        """Give the water what the grains took in the interval, move it on, and tell the grains anew.
-
-        Parameters
-        ----------
-        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); where grains enter and
-            leave, nan for one that is away.
-        impulse : what each took from the water in the interval, columns of `model.fluid`.
-
-        Returns
-        -------
-        sampled : columns of `model.fluid`, shape (n_grain, N_SAMPLED); for the engine.
+        """Give, move on and tell, as `Fluid.exchange`.
 
         Raises
         ------
@@ -262,40 +250,22 @@ class Coupling:
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, float(out[step.RESIDUAL]))
         fastest = float(out[step.FASTEST])
         refuse_unresolved(fastest, self.scene.dt, STIFF, *self._about[1:])
-        self.steps = steps_resolved(fastest, self.scene.dt, self.longest)
+        self.steps = steps_resolved(fastest, self.scene.dt, self.column.interval)
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR], self.ids)
         self.sampled = self._water_at_grains()
         return self.sampled
 
-    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due, with an exchange of what was taken so far.
-
-        Parameters
-        ----------
-        step : of the engine.
-        x, v, impulse : as in `exchange`.
-        """
-        if step > self.due - self.steps:  # grains have moved since the last exchange
-            self.steps, self.due = self.steps - (self.due - step), step
-            self.exchange(x, v, impulse)
-
     def among(self, x: Floats, step: int) -> "Coupling":
-        """The same water at a step at which grains have entered or left, just after an exchange.
-
-        Parameters
-        ----------
-        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
-        step : of the engine; the next exchange is due one later, as the drag on those that entered is not
-            known yet.
+        """The same water at a step at which grains have entered or left, as `Fluid.among`.
 
         Notes
         -----
         The water in each cell is what it was, and so is its momentum. What entering grains displace moves on
         with the next exchange, as it does where grains move from cell to cell.
         """
-        other = Coupling.begin(self.scene, self.column, self.longest, x, self.state, step)
+        other = Coupling.begin(self.scene, self.column, x, step, state=self.state)
         other.exchanges, other.worst, other.eddies = self.exchanges, self.worst, self.eddies
         other._arrays.force_z[:] = self._arrays.force_z
         other.sampled = other._water_at_grains()
@@ -309,14 +279,6 @@ class Coupling:
     def surface_at(self, x: Floats) -> Floats:
         """Height of the surface, the same everywhere [m], same shape."""
         return np.full(x.shape, float(self._out[SURFACE]))
-
-    def refuse_lost(self, x: Floats, grains: Ints, step: int, t: float) -> None:
-        """A column has no ends."""
-
-    @property
-    def bed_at_inlet(self) -> float:
-        """Nothing enters a column [m]."""
-        return 0.0
 
     @property
     def text(self) -> str:

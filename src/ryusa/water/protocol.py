@@ -6,24 +6,50 @@ from typing import Any, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import CouplingState, RowCouplingState, Scene
+from ryusa.model import Scene, Snapshot
 from ryusa.model.arrays import Floats
 
 
 class Fluid(Protocol):
     """Water of a run that exchanges momentum with its grains once per interval of steps.
 
-    `running.water.started` makes its first state, and one that goes on from a snapshot. What it is made of
-    (cells, bottom, ends) is the `flow` of the scene.
+    Cells, bottom and ends are those of the `flow` of the scene; `water.kinds` has what moves in which.
 
     Attributes
     ----------
+    steps : steps of the engine in the present interval.
     due : step of the engine at which the next exchange is due.
     sampled : water at the grains as given last, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
     """
 
+    steps: int
     due: int
     sampled: Floats
+
+    @staticmethod
+    def begin(scene: Scene, flow: Any, /, x: Floats, step: int = 0, threads: int = 1) -> "Fluid":
+        """Fill the flow of a scene with its first water.
+
+        Parameters
+        ----------
+        flow : of the scene; of the kind that this moves in.
+        x : centres of the grains [m], shape (n_grain, 3); nan for one that is away.
+        step : of the engine.
+        threads : share the loops over grains; the bits do not depend on them.
+
+        Raises
+        ------
+        ValueError : the flow is not valid.
+        WaterError : no first water was found.
+        """
+        ...
+
+    @staticmethod
+    def resume(
+        scene: Scene, flow: Any, found: Any, /, sampled: Floats | None = None, threads: int = 1
+    ) -> "Fluid":
+        """Go on from a snapshot of this kind, and the water at the grains with it; else as `begin`."""
+        ...
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
@@ -47,7 +73,9 @@ class Fluid(Protocol):
 
     def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
         """End the interval at this step, before the next exchange is due; else as `exchange`."""
-        ...
+        if step > self.due - self.steps:  # grains have moved since the last exchange
+            self.steps, self.due = self.steps - (self.due - step), step
+            self.exchange(x, v, impulse)
 
     def among(self, x: Floats, step: int) -> Self:
         """The same water at a step at which grains have entered or left, just after an exchange.
@@ -62,13 +90,14 @@ class Fluid(Protocol):
 
     def ends_with(self, after: Scene) -> bool:
         """Whether its interval has to end before the timeline makes the scene this one."""
-        ...
+        del after
+        return False
 
     def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
         ...
 
-    def snapshot(self, kept: Floats | None = None) -> CouplingState | RowCouplingState:
+    def snapshot(self, kept: Floats | None = None) -> Snapshot:
         """All that an exact resume needs, beside the water at the grains.
 
         Parameters
@@ -78,7 +107,7 @@ class Fluid(Protocol):
         ...
 
     def frame(self) -> Mapping[str, NDArray[Any]]:
-        """What a run folder keeps of it at a frame: the datasets of `scene.flow.frame_shapes()`."""
+        """What a run folder keeps of it at a frame: the fields of `scene.flow`."""
         ...
 
     def surface_at(self, x: Floats) -> Floats:
@@ -94,12 +123,12 @@ class Fluid(Protocol):
         grains : their ids, shape (n,).
         step, t : of the engine now, its time [s].
         """
-        ...
+        del x, grains, step, t
 
     @property
     def bed_at_inlet(self) -> float:
         """Thickness of the bed where water and grains enter [m]; 0 where none do."""
-        ...
+        return 0.0
 
     @property
     def text(self) -> str:

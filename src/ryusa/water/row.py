@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -113,9 +112,14 @@ def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = Non
     wet[np.arange(c.n) < first[:, None]] = 0.0
     content = (1.0 - phi) * wet
     volume = np.array([cells.sum() for cells in content])  # the sum of `WaterState.at_rest`
-    arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in row.state_shapes().items()}
-    arrays.update(volume=volume, content=content, wet=wet, surface=level)
-    return RowState(**arrays)
+    stations, segments = len(row.x_station), len(volume)
+    made = RowState(
+        np.zeros((stations, c.n)), volume, content, wet, level, np.zeros(stations),
+        np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1)), np.zeros((stations, N_OUT)),
+    )  # fmt: skip
+    if row.hydrostatic:
+        return made
+    return replace(made, w=np.zeros((segments, c.n + 1)), pressure=np.zeros((segments, c.n)))
 
 
 def advance_row(
@@ -161,7 +165,8 @@ def advance_row(
     pressure, own = arrays.pressure, dict[str, Floats]()
     if pressure is not None:  # whose first step takes the eddy viscosities of the last one
         faces[:] = state.edges
-        pressure.w[:], pressure.p[:] = state.w, state.pressure
+        pressure.w[:] = 0.0 if state.w is None else state.w
+        pressure.p[:] = 0.0 if state.pressure is None else state.pressure
     arrays.work.energy.books[:] = 0.0
     status = _advance(
         arrays.p, shape, arrays.ends, matrix, given, float(time), float(longest), water, arrays.work, rows,

@@ -17,6 +17,7 @@ from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
 from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
+from ryusa.water.protocol import Fluid
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
 from ryusa.water.row_grains import GrainsInRow
@@ -29,7 +30,7 @@ _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
 
 
 @dataclass
-class RowCoupling:
+class RowCoupling(Fluid):
     """The row of columns of a run.
 
     Attributes
@@ -132,7 +133,7 @@ class RowCoupling:
             self.grains = self.grains.changed(scene, self.row, self.state)
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
-        """Move the water on, and give what the grains are told; parameters as of `Coupling`.
+        """Move the water on, and give what the grains are told; parameters as of `Fluid`.
 
         Raises
         ------
@@ -165,14 +166,8 @@ class RowCoupling:
         elif self.grains is not None:
             self.grains.follow(ends)
 
-    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
-        """End the interval before the next exchange is due; parameters as of `Coupling.finish`."""
-        if step > self.due - self.steps:  # grains have moved since the last exchange
-            self.steps, self.due = self.steps - (self.due - step), step
-            self.exchange(x, v, impulse)
-
     def among(self, x: Floats, step: int) -> "RowCoupling":
-        """The same water at a step at which grains have entered or left; parameters as of `Coupling.among`.
+        """The same water at a step at which grains have entered or left; parameters as of `Fluid.among`.
 
         Notes
         -----
@@ -193,7 +188,13 @@ class RowCoupling:
         row, state, lowest = self.row, self.state, self.row.solid_cells()
         stations = row.stations_between
         sill = np.maximum(lowest[stations[0]], lowest[stations[1]])
-        return {
+        own = dict[str, Floats]()
+        if state.pressure is not None and state.w is not None:
+            own = {
+                "pressure": row.column.rho_w * state.pressure[row.inner],
+                "w_faces": state.w[row.inner].copy(),
+            }
+        return own | {
             "surface": state.surface[row.inner] - row.column.z_low + row.bottom,
             "volume": state.volume[row.inner].copy(),
             "content": state.content[row.inner].copy(),

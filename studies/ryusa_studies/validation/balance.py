@@ -66,7 +66,7 @@ def moving_bed(form: Buoyancy, seed: int) -> tuple[tuple[Scene, State], Column]:
     column = Column(
         z_low=-0.5 * D, dz=0.1 * D, n=120, depth=4.0 * D, z_bed=2.0 * D, area=WIDE * D * D,
         bed=BedKind.MOVING, mixing=Mixing.LI_SAWAMOTO, phi_max=0.55, d=D, g_x=G * math.sin(SLOPE),
-        start=Start.STEADY,
+        start=Start.STEADY, interval=100,
     )  # fmt: skip
     return made, column
 
@@ -78,7 +78,7 @@ class ChannelFlow:
         (self.fixed, first), self.column = moving_bed(form, seed)
         self.engine = registry.create()
         self.engine.load(self.fixed, first)
-        self.coupling = Coupling.begin(self.fixed, self.column, 100, first.x)
+        self.coupling = Coupling.begin(self.fixed, self.column, first.x)
         self.engine.set_fluid(self.coupling.sampled)
 
     def run(self, time: float) -> Impulses:

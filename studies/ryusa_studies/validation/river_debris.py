@@ -13,7 +13,7 @@ from ryusa.measure.long_section import bed_line, long_section, row_of
 from ryusa.model.arrays import Floats
 from ryusa.model.feeds import IN
 from ryusa.results import Results
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.study import (
     CaseRun,
     Finding,
@@ -163,7 +163,7 @@ def _rates(t: Floats, passed: Floats) -> Floats:
     return np.gradient(smooth, t)
 
 
-def _core(found: RowFrames, k: int) -> float:
+def _core(found: WaterFrames, k: int) -> float:
     """Mean concentration within the bed [-] in frame k."""
     row = found.row
     z = row.column.z - row.column.z_low

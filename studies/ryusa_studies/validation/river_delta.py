@@ -12,7 +12,7 @@ from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
 from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
-from ryusa.results.row import RowFrames
+from ryusa.results.water import WaterFrames
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, case_run, comparison, misfit
 from ryusa_studies.validation import river_bands as bands
 
@@ -119,7 +119,7 @@ def _foot(x: Floats, bed: Floats) -> float:
     return float(x[last]) if last else 0.0
 
 
-def _reach(found: RowFrames, front: float) -> slice:
+def _reach(found: WaterFrames, front: float) -> slice:
     """Segments from before the front to its foot, in the order in which the bed falls."""
     x = found.row.x
     return slice(int(np.searchsorted(x, front - LIP)), int(np.searchsorted(x, front + 1.5 * LIP)))
@@ -138,7 +138,7 @@ def _slope(bed: Floats, dx: float) -> float:
     return -float(np.polyfit(at * dx, flank[at], 1)[0])
 
 
-def _core(found: RowFrames, front: Floats, on: np.ndarray) -> float:
+def _core(found: WaterFrames, front: Floats, on: np.ndarray) -> float:
     """Mean concentration within the deposit at the last frame, upstream of its front and over the floor."""
     row, k = found.row, int(on[-1])
     z = row.column.z - row.column.z_low

@@ -117,7 +117,7 @@ def solitary(eps: float = 0.2, levels: int = 10) -> dict[str, Floats]:
     flow = (0.5 * (start.content[left] + start.content[right]) * u).sum(axis=1)
     u = u * np.where(flow > 1e-12, c * at * h / np.where(flow > 1e-12, flow, 1.0), 0.0)[:, None]
     u[0] = u[-1] = 0.0
-    w = np.zeros_like(start.w)
+    w = np.zeros((n + 2, row.column.n + 1))
     for k in range(row.column.n):
         w[1:-1, k + 1] = w[1:-1, k] - np.diff(u[:, k]) / dx * np.clip(h + rise - k * dz, 0.0, dz)
     now, arrays = replace(start, u=u, w=w), RowArrays.of(row)
@@ -186,7 +186,7 @@ def pore(kd: float, pressure: str = FULL) -> dict[str, Floats]:
     start = row_at_rest(row, deep + DEPTH + 0.15 * dz * np.cos(k * row.x), solid)
     period = 2.0 * math.pi / math.sqrt(G * k * math.tanh(1.0))
     now = advance_row(row, start, period, longest=period / 200, solid=solid)
-    own = now.pressure[1, :cells] if now.pressure.size else np.zeros(cells)
+    own = np.zeros(cells) if now.pressure is None else now.pressure[1, :cells]
     whole, z = G * (now.surface[1] - deep - DEPTH) + own, c.z[:cells]
     return {"z": z / deep, "p": whole / whole[-1], "exact": np.cosh(k * z) / np.cosh(k * z[-1])}
 

@@ -122,11 +122,11 @@ def _settle(law: Hindrance, where: Range, form: Buoyancy, phi: float, end: float
     # one layer of grains in each cell, wherever they are: the same concentration in all
     column = Column(
         z_low=0.0, dz=pitch * d, n=LAYERS + BELOW, depth=(LAYERS + BELOW) * pitch * d,
-        area=WIDE * pitch * d * d, nu=where.nu, bed=BedKind.MOVING,
+        area=WIDE * pitch * d * d, nu=where.nu, bed=BedKind.MOVING, interval=EXCHANGE,
     )  # fmt: skip
     engine = registry.create()
     engine.load(fixed, first)
-    coupling = Coupling.begin(fixed, column, EXCHANGE, first.x)
+    coupling = Coupling.begin(fixed, column, first.x)
     engine.set_fluid(coupling.sampled)
     middle = np.flatnonzero(b == LAYERS // 2)
     done = 0

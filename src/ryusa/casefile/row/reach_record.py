@@ -14,7 +14,7 @@ from ryusa.model.column import Column
 
 if TYPE_CHECKING:
     from ryusa.results import Results
-    from ryusa.results.row import RowFrames
+    from ryusa.results.water import WaterFrames
 
 Ints = NDArray[np.int64]
 LOOSE = 1.0 / 3.0  # of the packed concentration, from which grains are a bed: that of the inlet of a row
@@ -109,7 +109,7 @@ def bed_lines(phi: Floats, column: Column) -> Floats:
     return np.where(top < 0, 0.0, np.where(top == n - 1, n * column.dz, inner))
 
 
-def _profile(water: "RowFrames", frames: Ints, bed: float) -> tuple[Floats, Floats]:
+def _profile(water: "WaterFrames", frames: Ints, bed: float) -> tuple[Floats, Floats]:
     """Heights of the middles of the cells over the bed line [m], and mean speeds there [m/s]."""
     column = water.row.column
     z = (np.arange(column.n) + 0.5) * column.dz - bed
@@ -117,7 +117,7 @@ def _profile(water: "RowFrames", frames: Ints, bed: float) -> tuple[Floats, Floa
     return np.concatenate([[0.0], z]), np.concatenate([[float(np.interp(0.0, z, u))], u])
 
 
-def _share_below(water: "RowFrames", frames: Ints, bed: float) -> float:
+def _share_below(water: "WaterFrames", frames: Ints, bed: float) -> float:
     """Part of the discharge that passes below the bed line, by the means of speeds and water of cells [-]."""
     column = water.row.column
     passes = water.content[frames].mean(axis=(0, 1)) * water.u[frames].mean(axis=(0, 1))
