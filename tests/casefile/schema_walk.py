@@ -252,10 +252,10 @@ def outcome(case: Case) -> Outcome:
     if scene.events is not EventRule.TRACKED and case.stop.saltations is None:
         unread.append("tracked")
     if not scene.n_grain and scene.row is not None:  # water alone
-        kept = ("row", "dt", "gravity")
+        kept = ("flow", "dt", "gravity")
         unread += [name for name in parts["scene"] if name not in kept]
-        parts["scene"]["row"]["column"].pop("seed")
-        parts["scene"]["row"]["column"].pop("phi_max")
+        parts["scene"]["flow"]["column"].pop("seed")
+        parts["scene"]["flow"]["column"].pop("phi_max")
     for name in unread:
         parts["scene"].pop(name, None)
     water = parts["scene"].get("water", {})

@@ -9,7 +9,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.laws._family import Family
-from ryusa.laws.families import FAMILIES, Above, Arm, DampingLaw, DragOfForm, SideWalls, Unloading
+from ryusa.laws.families import FAMILIES, Above, Arm, DampingLaw, DragOfForm, Pressure, SideWalls, Unloading
 
 CHOICES = [choice for family in FAMILIES for choice in family if choice.word]
 
@@ -20,7 +20,7 @@ def with_word(choice: Family) -> Case:
         DampingLaw: {"law": "Hertz-Mindlin"}, Unloading: {"law": "Hertz-Mindlin"},
         Arm: {"model": "constant"}, SideWalls: {"side_walls": 0.1}, Above: {"profile": "uniform"},
     }  # fmt: skip
-    case = read(case_path("movable_bed.toml"))
+    case = read(case_path("weir.toml" if isinstance(choice, Pressure) else "movable_bed.toml"))
     if isinstance(choice, DragOfForm):
         case = case.model_copy(update={"grains": case.grains.model_copy(update={"shape": "rod"})})
     *sections, leaf = choice.key.split(".")

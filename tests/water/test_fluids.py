@@ -59,7 +59,7 @@ def flow_of(kind: str, scene: Scene) -> Flow:
 def made(request: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Scene, State]]:
     """Grains that fall into water of each kind."""
     for name, flow, fluid in (("current", Current, Drift), ("layered", Layered, LayeredDrift)):
-        monkeypatch.setitem(kinds.KINDS, flow, kinds.Kind(fluid, CurrentState))
+        monkeypatch.setitem(kinds.KINDS, flow, kinds.FluidKind(fluid, CurrentState))
         monkeypatch.setitem(flow_file.FLOWS, name, flow)
     scene, state = falling()
     scene = replace(scene, water=replace(scene.water, buoyancy=Buoyancy.STRESS))

@@ -58,8 +58,10 @@ def chosen(case: Case, family: type[F]) -> F:
 
 
 def section_of(case: Case, family: type[Family]) -> Section | None:
-    """The section of a case that holds the key of a family; None in a dry case."""
+    """The section of a case that holds the key of a family; None in a dry case, or without that section."""
     top, *below = family.key.split(".")[:-1]
+    if below == ["row"]:
+        return case.row
     return case.column if below and case.water is not None else getattr(case, top)
 
 

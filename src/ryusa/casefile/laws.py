@@ -11,7 +11,7 @@ def law_rows(case: Case) -> list[ExplainRow]:
     """One row for each family of laws that has an effect in the case."""
     rows: list[ExplainRow] = []
     for family, choice in in_force(case).items():
-        if water_alone(case) and not family.key.startswith(("water.profile", "water.column")):
+        if water_alone(case) and not family.key.startswith(("water.profile", "water.column", "water.row")):
             continue  # of grains
         section = section_of(case, family)
         stated = section is not None and given(section, family.key.rsplit(".", 1)[1])

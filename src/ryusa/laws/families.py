@@ -366,5 +366,5 @@ class Fluctuations(Family, key="water.column.fluctuations"):
 FAMILIES: tuple[type[Family], ...] = (
     ContactForce, DampingLaw, Unloading, Parting, ContactTiming, Adhesion, Slip, Cap, Rolling, Arm,
     Profile, Above, Drag, DragOfForm, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film,
-    BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
+    BedKind, SurfaceRule, Pressure, Drive, Start, Mixing, SideWalls, Fluctuations,
 )

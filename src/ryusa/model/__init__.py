@@ -4,7 +4,7 @@ from ryusa.model.column import Budget, Column, CouplingState, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.feeds import PASSAGE, Arrivals, Exit, Feed, Traffic
-from ryusa.model.flow import Flow, Snapshot
+from ryusa.model.flow import Flow, FluidState
 from ryusa.model.fluid import FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
 from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
@@ -30,6 +30,7 @@ __all__ = [
     "Feed",
     "Flow",
     "FluidAtGrains",
+    "FluidState",
     "Materials",
     "RigidBodies",
     "RollingLaw",
@@ -37,7 +38,6 @@ __all__ = [
     "RowGrainState",
     "RowState",
     "Scene",
-    "Snapshot",
     "State",
     "Tally",
     "Term",

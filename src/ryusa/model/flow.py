@@ -14,7 +14,7 @@ class Field(NamedTuple):
     at: tuple[str, ...] = ()  # its axes, names of `Flow.places`; none: one number
 
 
-class Snapshot(Protocol):
+class FluidState(Protocol):
     """State of the water between two exchanges: a dataclass of numbers, arrays and such dataclasses.
 
     An array is annotated with its axes: names of `Flow.places`, "grain", or lengths. With the water at the

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.laws._family import numbers
 from ryusa.laws.families import Buoyancy, Drive, Pressure, SurfaceRule
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
@@ -25,6 +26,7 @@ AGREE = 1.0e-9  # permitted relative difference of the length of a periodic row 
 OPEN, WALL, INFLOW = range(3)  # kinds of a station
 DEPTH_GIVEN, SAME_DEPTH = range(2)  # rules of the segment beyond an end
 N_BUDGET = 14  # numbers of the momentum budget of a station, as `momentum_balance` writes them
+_HYDROSTATIC, _ = numbers(__name__, Pressure.HYDROSTATIC, Pressure.FULL)
 STEEPEST = math.radians(20.0)  # largest angle between bottom and x axis
 
 
@@ -116,7 +118,7 @@ class ColumnRow(Flow):
     @property
     def hydrostatic(self) -> bool:
         """Whether the pressure is the weight of the water above."""
-        return self.pressure is Pressure.HYDROSTATIC
+        return int(self.pressure) == _HYDROSTATIC
 
     @property
     def inner(self) -> slice:

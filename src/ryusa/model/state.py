@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import Contacts
 from ryusa.model.engine_block import EngineBlock
-from ryusa.model.flow import Snapshot
+from ryusa.model.flow import FluidState
 from ryusa.model.fluid import FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState
 from ryusa.model.tally import Tally
@@ -32,7 +32,7 @@ class State(ByShape):
     contacts: Contacts = field(default_factory=Contacts.none)
     tally: Tally | None = None  # energy account and extremes so far; None before the first step
     fluid: FluidAtGrains | None = None  # water at every grain, if there is a water column
-    coupling: Snapshot | None = None  # state of the water, not used by engines
+    coupling: FluidState | None = None  # state of the water, not used by engines
     # whether each grain is there, shape (n_grain,); empty: all are. x, v and omega of absent ones are nan
     present: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     bodies: BodyState | None = None  # motion of clumps, of which x, v and omega of their members follow

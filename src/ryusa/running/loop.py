@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
-from ryusa.model import Scene, Snapshot, State
+from ryusa.model import FluidState, Scene, State
 from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
@@ -290,7 +290,7 @@ class Loop:
         state, water = self.engine.state(), self._water_now()
         return state if water is None else replace(state, coupling=water)
 
-    def _water_now(self) -> Snapshot | None:
+    def _water_now(self) -> FluidState | None:
         return None if self._water is None else snapshot(self.engine, self._water)
 
     def _chunk(self) -> int:

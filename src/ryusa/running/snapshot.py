@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, GivesPieces
 from ryusa.errors import CheckpointError
-from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, Scene, Snapshot, State
+from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, FluidState, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.rows import RowsInPieces
@@ -37,7 +37,7 @@ _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
 
 
-def engine_block(engine: Engine, coupling: Snapshot | None) -> CheckpointBlock:
+def engine_block(engine: Engine, coupling: FluidState | None) -> CheckpointBlock:
     """The state of an engine, and of its water, as a block; arrays piece by piece where it gives them so."""
     state, rows = engine.state_in_pieces() if isinstance(engine, GivesPieces) else (engine.state(), ())
     return state_block(state if coupling is None else replace(state, coupling=coupling), rows)
@@ -178,10 +178,10 @@ class _Reader:
             found[name] = int(found[name])
         return Tally(**found)
 
-    def _coupling(self, n: int) -> Snapshot:
+    def _coupling(self, n: int) -> FluidState:
         if (flow := self._scene.flow) is None:
             raise ValueError("water, but the scene has none")
-        found: Snapshot = self._part(KINDS[type(flow)].state, "coupling", {**flow.places, "grain": n})
+        found: FluidState = self._part(KINDS[type(flow)].state, "coupling", {**flow.places, "grain": n})
         if not 1 <= found.steps < _LATEST or not int(self._values["step"]) < found.due < _LATEST:
             raise ValueError(f"{found.steps} steps between exchanges, the next at step {found.due}")
         if fault := found.fault(n + self._scene.n_fixed):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
-from ryusa.model import Scene, Snapshot, State
+from ryusa.model import FluidState, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.water.coupling import Coupling
 from ryusa.water.kinds import KINDS
@@ -88,6 +88,6 @@ def changed(engine: Engine, water: Fluid, scene: Scene) -> None:
         water.change(scene)
 
 
-def snapshot(engine: Engine, water: Fluid) -> Snapshot:
+def snapshot(engine: Engine, water: Fluid) -> FluidState:
     """State of the water, for an exact resume."""
     return water.snapshot(engine.kept() if isinstance(engine, SharesColumn) else None)

@@ -2,20 +2,20 @@
 
 from typing import NamedTuple
 
-from ryusa.model import Column, ColumnRow, CouplingState, Flow, RowCouplingState, Snapshot
+from ryusa.model import Column, ColumnRow, CouplingState, Flow, FluidState, RowCouplingState
 from ryusa.water.coupling import Coupling
 from ryusa.water.protocol import Fluid
 from ryusa.water.row_coupling import RowCoupling
 
 
-class Kind(NamedTuple):
+class FluidKind(NamedTuple):
     """A kind of water."""
 
     fluid: type[Fluid]
-    state: type[Snapshot]
+    state: type[FluidState]
 
 
-KINDS: dict[type[Flow], Kind] = {
-    Column: Kind(Coupling, CouplingState),
-    ColumnRow: Kind(RowCoupling, RowCouplingState),
+KINDS: dict[type[Flow], FluidKind] = {
+    Column: FluidKind(Coupling, CouplingState),
+    ColumnRow: FluidKind(RowCoupling, RowCouplingState),
 }

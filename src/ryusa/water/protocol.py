@@ -6,7 +6,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import Scene, Snapshot
+from ryusa.model import FluidState, Scene
 from ryusa.model.arrays import Floats
 
 
@@ -97,7 +97,7 @@ class Fluid(Protocol):
         """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
         ...
 
-    def snapshot(self, kept: Floats | None = None) -> Snapshot:
+    def snapshot(self, kept: Floats | None = None) -> FluidState:
         """All that an exact resume needs, beside the water at the grains.
 
         Parameters

@@ -16,7 +16,7 @@ from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._parts import PHI, CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._rolling_fit import HeapFit, limits
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
-from ryusa_studies.osada2004.rolling_friction import DEBRIS, GRAVEL, NONE, SPINS, Flow
+from ryusa_studies.osada2004.rolling_friction import DEBRIS, GRAVEL, NONE, SPINS, MeasuredFlow
 
 FIGURE = "fig23"
 TITLE = "A coefficient of rolling friction, fitted on the heap alone in a wide box, and then used blind"
@@ -145,14 +145,14 @@ def _locked(angle: str, seed: int) -> CaseRun:
     return paper_run(DEBRIS, _angle("contact.friction_angle", angle), seed)
 
 
-def measure(results: Results, one: CaseRun) -> _heap.Heap | float | Flow:
+def measure(results: Results, one: CaseRun) -> _heap.Heap | float | MeasuredFlow:
     """Heap, mean spin [rad/s], or flow."""
     if one.case != BED:
         return rolling_friction.measure(results, one)
     load = transport(results)
     formula = q_star_meyer_peter_mueller(load.tau_star)
     over = load.averages["q_star"].value / formula if formula > 0.0 else math.inf
-    return Flow(load.averages["q"].value, math.nan, over, load.tau_star)
+    return MeasuredFlow(load.averages["q"].value, math.nan, over, load.tau_star)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

@@ -43,7 +43,7 @@ BANDS = {
 
 
 @dataclass(frozen=True)
-class Flow:
+class MeasuredFlow:
     """Flux [m2/s], speed near the bed [m/s]; bed load over the formula [-], and tau_star at the bed [-]."""
 
     q: float
@@ -112,7 +112,7 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     return list(dict.fromkeys(runs))
 
 
-def measure(results: Results, one: CaseRun) -> _heap.Heap | float | Flow:
+def measure(results: Results, one: CaseRun) -> _heap.Heap | float | MeasuredFlow:
     """Heap, mean spin [rad/s], or flow."""
     if one.case == _heap.CASE:
         return _heap.heap(results)
@@ -124,7 +124,7 @@ def measure(results: Results, one: CaseRun) -> _heap.Heap | float | Flow:
     weight = np.nan_to_num(profile.phi.value) * inside
     load = transport(results)
     formula = q_star_meyer_peter_mueller(load.tau_star)
-    return Flow(
+    return MeasuredFlow(
         q=load.averages["q"].value,
         near_bed=float(weight @ np.nan_to_num(profile.v_x.value)) / float(weight.sum()),
         over_formula=load.averages["q_star"].value / formula if formula > 0.0 else math.inf,
@@ -248,14 +248,14 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     return [line(one, found[one]) for one in tasks(plan)]
 
 
-def line(one: CaseRun, number: _heap.Heap | float | Flow) -> dict[str, object]:
+def line(one: CaseRun, number: _heap.Heap | float | MeasuredFlow) -> dict[str, object]:
     """Setting and numbers of one run."""
     made: dict[str, object] = {"case": one.case, "mu_r": one.get("rolling.coefficient", NONE)}
     made |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get("contact.friction_angle", "30 deg")}
     made |= {"bed_slope": one.get("motion.slope"), "seed": one.get("seed")}
     if isinstance(number, _heap.Heap):
         return made | _heap.line(number)
-    if isinstance(number, Flow):
+    if isinstance(number, MeasuredFlow):
         return made | {
             "q_m2_per_s": number.q, "near_bed_m_per_s": number.near_bed,
             "over_formula": number.over_formula, "tau_star": number.tau_star,

@@ -12,7 +12,7 @@ from ryusa.study.registration import Registration
 from ryusa_studies import osada2004
 from ryusa_studies.osada2004 import rolling_blind as part
 from ryusa_studies.osada2004._rolling_fit import HeapFit
-from ryusa_studies.osada2004.rolling_friction import NONE, Flow
+from ryusa_studies.osada2004.rolling_friction import NONE, MeasuredFlow
 
 QUICK, STANDARD = Plan(Level.QUICK, (1,)), Plan(Level.STANDARD, (1, 2, 3, 4))
 TRIED = tuple(map(float, part.COEFFICIENTS))
@@ -72,9 +72,9 @@ def made(plan, slope=lambda mu_r: 36.0 + 4.0 * math.log(mu_r), spin=300.0, load=
         elif one.case == "saltation":
             result[one] = spin + seed
         elif one.case == "fig17":
-            result[one] = Flow(1.0, 1.0, math.nan, math.nan)
+            result[one] = MeasuredFlow(1.0, 1.0, math.nan, math.nan)
         else:
-            result[one] = Flow(1e-4, math.nan, load, 0.3)
+            result[one] = MeasuredFlow(1e-4, math.nan, load, 0.3)
     return result
 
 

@@ -10,7 +10,7 @@ from ryusa.study.registration import Registration
 from ryusa_studies import osada2004
 from ryusa_studies.osada2004 import rolling_friction as part
 from ryusa_studies.osada2004._rolling_fit import SlopeFit, SpinFit, best_pair, limits
-from ryusa_studies.osada2004.rolling_friction import NONE, PAIR, Flow
+from ryusa_studies.osada2004.rolling_friction import NONE, PAIR, MeasuredFlow
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))
@@ -78,13 +78,13 @@ def found(plan, slope=38.0, spin=300.0, fast=1.2, flux=1.0, load=1.0):
         elif one.case == "saltation":
             result[one] = spin + seed
         elif one.case == "fig17" and one.get("motion.rotation") != "free":
-            result[one] = Flow(1.0, 1.0, math.nan, math.nan)
+            result[one] = MeasuredFlow(1.0, 1.0, math.nan, math.nan)
         elif one.case == "fig17":
-            result[one] = Flow(
+            result[one] = MeasuredFlow(
                 1.5 if plain else flux, 2.0 if plain else fast + 0.01 * seed, math.nan, math.nan
             )
         else:
-            result[one] = Flow(1e-4, 0.1, load, 0.3)
+            result[one] = MeasuredFlow(1e-4, 0.1, load, 0.3)
     return result
 
 

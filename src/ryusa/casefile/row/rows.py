@@ -38,7 +38,6 @@ from ryusa.casefile.row.values import (
 )
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.casefile.walls.mesh import box_of
-from ryusa.laws.families import Pressure
 
 # Segments of a crest, and q/(sqrt(g) H^1.5) over it in a row, of `ryusa validate river` (design/0027)
 _CRESTS = ((1, 0.561), (2, 0.513), (3, 0.497), (5, 0.484), (10, 0.476))
@@ -93,10 +92,8 @@ def _grid(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
     )
     ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
-    own = Pressure.of(keys.pressure)
     return [
         *_segments(case, ends),
-        *([] if own is Pressure.HYDROSTATIC else [word("water", "pressure", own.word, own.about)]),
         number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
         number(
             "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",
