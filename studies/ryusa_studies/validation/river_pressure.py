@@ -19,6 +19,7 @@ from ryusa.study import (
     Band,
     Finding,
     Found,
+    Level,
     Plan,
     Source,
     Task,
@@ -260,12 +261,17 @@ def collapse(pressure: str) -> dict[str, Floats]:
 
 def _waves() -> list[Task]:
     return [
-        calculation(standing, kh=kh, levels=10, pressure=one, seconds=1.0) for kh in LENGTHS for one in BOTH
+        calculation(standing, kh=kh, levels=10, pressure=one, seconds=0.5) for kh in LENGTHS for one in BOTH
     ]
 
 
-def _over_waves() -> list[Task]:
-    return [calculation(wavy, kh=kh, pressure=FULL, seconds=5.0) for kh in OVER_WAVES]
+def _lengths(plan: Plan) -> tuple[float, ...]:
+    """Wave numbers times depth over a wavy bed; one when quick."""
+    return plan.pick(OVER_WAVES[1:2], OVER_WAVES)
+
+
+def _over_waves(plan: Plan) -> list[Task]:
+    return [calculation(wavy, kh=kh, pressure=FULL, seconds=4.0) for kh in _lengths(plan)]
 
 
 def _in_beds() -> list[Task]:
@@ -277,18 +283,19 @@ def _of_both(function: object) -> list[Task]:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """The same at both levels, but for the jumps: half a minute together, and the time to compile."""
-    every = [*_waves(), calculation(solitary, seconds=8.0), *_over_waves(), *_in_beds()]
-    every += [*_of_both(plate), *_of_both(brink), *_of_both(collapse)]
-    return [*every, *jump.tasks(plan)]
+    """Two minutes with the jumps; when quick without what takes longest, or misses its limit."""
+    every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
+    if plan.level is Level.QUICK:
+        return every
+    return [*every, calculation(solitary, seconds=10.0), *_of_both(collapse), *jump.tasks()]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Each beside what theory or experiment has."""
-    return [
-        _standing(found), _solitary(found), _wavy(found), _pore(found), _plate(found), _brink(found),
-        _collapse(found), *jump.judge(found, plan),
-    ]  # fmt: skip
+    every = [_standing(found), _wavy(found, plan), _pore(found), _plate(found), _brink(found)]
+    if plan.level is Level.QUICK:
+        return every
+    return [*every, _solitary(found), _collapse(found), *jump.judge(found)]
 
 
 def _standing(found: Found) -> Finding:
@@ -326,21 +333,21 @@ def _solitary(found: Found) -> Finding:
     )  # fmt: skip
 
 
-def _wavy(found: Found) -> Finding:
-    runs = [found[one] for one in _over_waves()]
+def _wavy(found: Found, plan: Plan) -> Finding:
+    lengths, runs = _lengths(plan), [found[one] for one in _over_waves(plan)]
     kh = np.linspace(0.4, 2.2, 50)
     numbers = [
         misfit(
             f"kh = {one:g}: surface over bed off by", abs(float(run["ratio"]) / kennedy(one) - 1.0), "-",
             OVER_WAVY[one],
         )
-        for one, run in zip(OVER_WAVES, runs, strict=True)
+        for one, run in zip(lengths, runs, strict=True)
     ]  # fmt: skip
     return comparison(
         "wavy", "Surface over a wavy bed",
         Source("potential flow (Kennedy 1963): 1/(cosh kh - sinh kh/(Fr**2 kh))"),
         Axis("wave number times depth", "-"), Axis("height of the surface over that of the bed", "-"),
-        [Curve("row", np.array(OVER_WAVES), np.array([float(run["ratio"]) for run in runs]))],
+        [Curve("row", np.array(lengths), np.array([float(run["ratio"]) for run in runs]))],
         [Curve("potential flow", kh, np.array([kennedy(one) for one in kh]))], numbers,
         {"Froude number": f"{ANTIDUNE:g}, of antidunes", "bed": "0.02 depths high", "levels": "20"},
     )  # fmt: skip
