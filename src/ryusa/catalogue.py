@@ -245,7 +245,7 @@ MEASURES = (
                  "surface, bed, speed, Froude number, discharge of water and grains along a row of columns",
                  ("t", "bed", *WINDOW),
                  fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
-    MeasureEntry("x_t", "ryusa.measure.long_section:depth_history",
+    MeasureEntry("x_t", "ryusa.measure.depth_history:depth_history",
                  "depth, bed, discharge of water and grains of a row of columns over distance and time",
                  ("bed", *WINDOW), settled=True,
                  fed=True, clumps=True, grainless=True, table=True, needs=("row",)),

@@ -20,9 +20,9 @@ from ryusa.figures.plane_shear import plane_shear
 from ryusa.figures.shear_zone import shear_zone
 from ryusa.measure import Snapshot, Tracks
 from ryusa.measure.deposit import Deposit
+from ryusa.measure.depth_history import DepthHistory
 from ryusa.measure.energy import Energy
 from ryusa.measure.front import Front
-from ryusa.measure.long_section import DepthHistory
 from ryusa.model.tally import GIFTS, HELD, LOSSES
 from ryusa.results.label import run_label
 

@@ -15,7 +15,8 @@ from ryusa.figures.long_section import long_section as long_section_figure
 from ryusa.figures.long_section import x_t
 from ryusa.measure import deposit
 from ryusa.measure.along_row import grains_along_row, moving_in_row, segments_of
-from ryusa.measure.long_section import depth_history, long_section
+from ryusa.measure.depth_history import depth_history
+from ryusa.measure.long_section import long_section
 from ryusa.model.column import Column
 from ryusa.model.feeds import IN, OUT, PASSAGE
 from ryusa.model.row import ColumnRow, RowDam

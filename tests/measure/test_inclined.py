@@ -11,8 +11,9 @@ from tests.measure.made_rows import CELLS, G, run_of
 from ryusa.casefile import read_text
 from ryusa.casefile.row.values import reaches
 from ryusa.laws.families import BedKind, SurfaceRule
+from ryusa.measure.depth_history import depth_history
 from ryusa.measure.inclined import fall_of
-from ryusa.measure.long_section import depth_history, long_section
+from ryusa.measure.long_section import long_section
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
 

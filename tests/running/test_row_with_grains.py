@@ -17,7 +17,8 @@ from ryusa.engine import registry
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import table_of_frame
 from ryusa.measure.along_row import grains_along_row
-from ryusa.measure.long_section import depth_history, long_section
+from ryusa.measure.depth_history import depth_history
+from ryusa.measure.long_section import long_section
 from ryusa.model import RowState
 from ryusa.model.fluid import EXTRA_X
 from ryusa.results import Results, schema

@@ -10,12 +10,13 @@ from matplotlib.figure import Figure
 from ryusa.catalogue import QUANTITIES
 from ryusa.errors import ResultsError
 from ryusa.figures import style
-from ryusa.measure.long_section import THIN, DepthHistory, Floats, LongSection
+from ryusa.measure.depth_history import DepthHistory
+from ryusa.measure.long_section import THIN, Floats, LongSection
 from ryusa.spelling import known_word
 
 FEW_METRES = 3.0  # span of lengths from which they are drawn in metres, below in centimetres [m]
 MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s [m2/s]
-WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
+WATER, LINE, GROUND, HEAD = "#0072B2", "#D55E00", "#8c6d3f", "#CC79A7"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
 FILM = 0.01  # of the greatest depth, below which water does not count for the ends of axes
@@ -163,13 +164,16 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     axes.plot(edge, ground, color="#5a4a2f", lw=0.9)
     axes.plot(along, top, color=WATER, lw=1.2, label="surface")
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
+    if found.pressure_head is not None:
+        head = np.where(wet, found.elevation(found.pressure_head) * scale, np.nan)
+        axes.plot(x, head, color=HEAD, lw=0.8, label="pressure head at the floor")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
     flows = np.where(wet & (found.critical > THIN), critical, np.nan)
     for k, (at, part) in enumerate(zip(np.split(x, steps), np.split(flows, steps), strict=True)):
         axes.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
     axes.set_ylabel(f"elevation  ({unit})")
     axes.set_ylim(low - 0.12 * span, low + 1.05 * span)
-    style.legend_above(axes, 4, loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=6.5)
+    style.legend_above(axes, 5, loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=6.5)
     if not timed:
         return
     begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "

@@ -6,6 +6,7 @@ from ryusa.measure.collisions import Collisions, ContactTimes, collisions, conta
 from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
 from ryusa.measure.deposit import Deposit, deposit
+from ryusa.measure.depth_history import DepthHistory, depth_history
 from ryusa.measure.direct_shear import DirectShear, direct_shear
 from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
@@ -13,7 +14,7 @@ from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.front import Front, front
-from ryusa.measure.long_section import DepthHistory, LongSection, depth_history, long_section
+from ryusa.measure.long_section import LongSection, long_section
 from ryusa.measure.mill import Mill, mill
 from ryusa.measure.passages import Passages, passages
 from ryusa.measure.paths import Alternating, Paths, alternating, paths

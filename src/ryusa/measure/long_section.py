@@ -1,4 +1,4 @@
-"""Water and grains along a row of columns: at one moment or as means, and over distance and time."""
+"""Water and grains along a row of columns, at one moment or as means."""
 
 import math
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Run, settle_time
+from ryusa.measure._run import Run
 from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.inclined import fall_of, gravity_at, pull_of
 from ryusa.measure.statistics import standard_errors
@@ -30,7 +30,10 @@ _WATER = (
     "tau",
 )  # fmt: skip
 _GRAINS = ("volume", "solid_discharge", "transport_concentration", "concentration")
-_LENGTHS = ("x", "bottom", "floor", "bed", "bed_change", "surface", "depth", "critical", "energy", "volume")
+_LENGTHS = (
+    "x", "bottom", "floor", "bed", "bed_change", "surface", "depth", "critical", "energy", "volume",
+    "pressure_head",
+)  # fmt: skip
 _UNITS = {  # as parts of the names of columns; none: without a unit
     **dict.fromkeys(_LENGTHS, "_m"),
     "t": "_s", "speed": "_m_per_s", "discharge": "_m2_per_s", "solid_discharge": "_m2_per_s", "tau": "_Pa",
@@ -56,6 +59,8 @@ class LongSection(ByShape):
     critical : depth along z at which the discharge of both has a Froude number of 1 [m].
     energy : height of the energy line [m], see Notes.
     tau : shear stress at the bottom, mean of both ends [Pa].
+    pressure_head : height to which the pressure at the floor raises water [m], None where it is hydrostatic:
+        that of the surface.
     dams : name, first and last x [m] of each.
     volume : of free grains per area, with pores left out [m]; 0 in a run without, and so the following.
     solid_discharge : q_s, volume of grains per width and time, mean of both ends [m2/s].
@@ -99,6 +104,7 @@ class LongSection(ByShape):
     window: tuple[float, float] | None = None
     error: dict[str, Floats] = field(default_factory=dict[str, Floats])
     grains: bool = False
+    pressure_head: Floats | None = None
 
     def elevation(self, z: Floats) -> Floats:
         """Vertical height of points at the heights z normal to the x axis [m]; 0 at the origin."""
@@ -108,10 +114,12 @@ class LongSection(ByShape):
         """One line for each segment; the error of a mean is beside it, in its unit."""
         names = (*_WATER, *_GRAINS) if self.grains else _WATER
         columns: dict[str, Floats] = {}
+        if self.pressure_head is not None:
+            names = (*names, "pressure_head")
         for name in names:
-            columns[_column(name)] = getattr(self, name)
+            columns[column_name(name)] = getattr(self, name)
             if name in self.error:
-                columns[_column(name, "_error")] = self.error[name]
+                columns[column_name(name, "_error")] = self.error[name]
         return lines(columns)
 
 
@@ -190,7 +198,7 @@ def _section(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> LongSectio
         critical=np.cbrt(through**2 / pull),
         energy=means["surface"] + head,
         tau=means["tau"],
-        dams=_dams(row),
+        dams=dams_of(row),
         volume=means["volume"],
         solid_discharge=means["solid_discharge"],
         transport_concentration=carried,
@@ -198,6 +206,7 @@ def _section(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> LongSectio
         window=(float(found.t[frames[0]]), now) if len(frames) > 1 else None,
         error=errors,
         grains=bool(run.scene.n_grain),
+        pressure_head=means.get("pressure_head"),
     )
 
 
@@ -218,13 +227,15 @@ def _series(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> dict[str, F
     if run.scene.n_grain:
         held = grains_along_row(run, row, frames)
         volume = held.volume
-        solid = _between(
+        solid = between_stations(
             row.periodic, np.diff(held.passed, axis=0) / dt if len(frames) > 1 else held.flux
         )  # fmt: skip
     weights = dt / dt.mean() if len(frames) > 1 else 1.0  # their plain mean is that over time
-    return {
+    own = {} if row.hydrostatic else {"pressure_head": surface + _head_beyond(run, found, frames)}
+    return own | {
         "bed": beds, "surface": surface, "depth": np.maximum(surface - beds, 0.0),
-        "discharge": weights * _between(row.periodic, through), "tau": _between(row.periodic, stress),
+        "discharge": weights * between_stations(row.periodic, through),
+        "tau": between_stations(row.periodic, stress),
         "volume": volume, "solid_discharge": weights * solid, "above": grains, "over": water,
     }  # fmt: skip
 
@@ -254,100 +265,18 @@ def _errors_of_ratios(
         }
 
 
-@dataclass(frozen=True, repr=False)
-class DepthHistory(ByShape):
-    """A row over distance and time; arrays of shape (n_frame, n_segment).
-
-    Attributes
-    ----------
-    t : times of the frames [s], shape (n_frame,).
-    x : middles of the segments [m], shape (n_segment,).
-    depth : from the bed to the surface [m], as in `LongSection`.
-    discharge : of water, mean of both ends of a segment [m2/s].
-    froude : Froude number as in `LongSection` [-], in the first frame with the discharge of grains by their
-        speeds; nan where it is dry.
-    dams : name, first and last x [m] of each.
-    bed : height of the bed [m].
-    volume : of free grains per area [m]; 0 in a run without.
-    solid_discharge : of grains since the frame before, mean of both ends [m2/s]; nan in the first.
-    grains : whether there are free grains.
-    """
-
-    t: Floats
-    x: Floats
-    depth: Floats
-    discharge: Floats
-    froude: Floats
-    dams: tuple[tuple[str, float, float], ...]
-    bed: Floats
-    volume: Floats
-    solid_discharge: Floats
-    grains: bool = False
-
-    @property
-    def bed_change(self) -> Floats:
-        """Rise of the bed since the first of the frames, at `t[0]` [m]."""
-        return self.bed - self.bed[0]
-
-    def rows(self) -> list[dict[str, object]]:
-        """One line for each frame and segment."""
-        n, m = self.depth.shape
-        columns = {
-            "t": np.repeat(self.t, m), "x": np.tile(self.x, n), "depth": self.depth,
-            "discharge": self.discharge, "froude": self.froude,
-        }  # fmt: skip
-        if self.grains:
-            columns |= {
-                "bed": self.bed, "bed_change": self.bed_change,
-                "volume": self.volume, "solid_discharge": self.solid_discharge,
-            }  # fmt: skip
-        return lines({_column(name): values for name, values in columns.items()})
-
-
-def _column(name: str, of: str = "") -> str:
+def column_name(name: str, of: str = "") -> str:
     """Name of a column of a table, or of its error, with the unit."""
     return name + of + _UNITS.get(name, "")
 
 
-def depth_history(
-    run: Run, begin: float | None = None, end: float = math.inf, bed: Bed = "packed"
-) -> DepthHistory:
-    """Find depth, bed and discharges of a row of columns over distance and time.
-
-    Parameters
-    ----------
-    run : its water is a row of columns.
-    begin, end : window [s]; `begin` defaults to the case's `record.settle`. The rise of the bed counts from
-        its first frame: a bed that is laid loose sinks while it settles.
-    bed : what ends the bed, as in `long_section`.
-
-    Raises
-    ------
-    CaseError : `bed` is no such word.
-    ResultsError : the run has no row of columns, or no frame in the window.
-    """
-    known_word(bed, BEDS, "bed")
-    found = row_of(run)
-    begin = settle_time(run) if begin is None else begin
-    row, frames = found.row, np.flatnonzero((found.t >= begin) & (found.t <= end))
-    if not len(frames):
-        raise ResultsError(f"the run has no frame from {begin:g} to {end:g} s")
-    beds = bed_line(run, found, frames, bed)
-    depth = np.maximum(found.surface[frames] - beds, 0.0)
-    through = _between(row.periodic, found.discharge[frames])
-    volume, solid, both = np.zeros(depth.shape), np.zeros(depth.shape), through
-    if run.scene.n_grain:
-        held = grains_along_row(run, row, frames)
-        rates = np.diff(held.passed, axis=0) / np.diff(found.t[frames])[:, None]
-        solid = _between(row.periodic, np.concatenate([held.flux[:1], rates]))
-        volume, both = held.volume, through + solid
-        solid[0] = math.nan
-    thick, fall = np.where(depth > THIN, depth, math.nan), fall_of(row)
-    pull = np.array([pull_of(fall, *gravity_at(run, one)) for one in found.t[frames].tolist()])
-    return DepthHistory(
-        found.t[frames], row.x, depth, through, np.abs(both) / np.sqrt(pull * thick**3), _dams(row), beds,
-        volume, solid, bool(run.scene.n_grain),
-    )  # fmt: skip
+def _head_beyond(run: Run, found: WaterFrames, frames: Ints) -> Floats:
+    """Pressure at the floor beyond the hydrostatic one as a height of water [m], (n_frame, n_segment)."""
+    row = found.row
+    lowest = np.zeros(row.n_segment, np.int64) if row.solid is None else row.solid
+    at_floor = found.pressure[frames][:, np.arange(row.n_segment), lowest]
+    g_z = np.array([gravity_at(run, t)[1] for t in found.t[frames].tolist()])
+    return np.asarray(at_floor / (row.column.rho_w * g_z[:, None]), dtype=np.float64)
 
 
 def row_of(run: Run) -> WaterFrames:
@@ -408,12 +337,12 @@ def _over(above: Floats, below: Floats, where: NDArray[np.bool_]) -> Floats:
     return np.divide(above, below, out=np.full(len(below), math.nan), where=where)
 
 
-def _dams(row: ColumnRow) -> tuple[tuple[str, float, float], ...]:
+def dams_of(row: ColumnRow) -> tuple[tuple[str, float, float], ...]:
     """Name, first and last x of the dams [m]."""
     return tuple((one.name, row.x_low + one.first * row.dx, row.x_low + one.end * row.dx) for one in row.dams)
 
 
-def _between(periodic: bool, stations: Floats) -> Floats:
+def between_stations(periodic: bool, stations: Floats) -> Floats:
     """Means of both ends of the segments, of values at the stations, which are the last axis."""
     after = np.roll(stations, -1, axis=-1) if periodic else stations[..., 1:]
     return 0.5 * ((stations if periodic else stations[..., :-1]) + after)

@@ -11,7 +11,8 @@ import numpy as np
 from ryusa.catalogue import MEASURES, called
 from ryusa.errors import ResultsError
 from ryusa.measure._run import settle_time
-from ryusa.measure.long_section import depth_history, long_section
+from ryusa.measure.depth_history import depth_history
+from ryusa.measure.long_section import long_section
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.table import Averages
 from ryusa.results import Results

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.model.row import OPEN
+from ryusa.model.row import INFLOW, OPEN
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.exchange import Ints
@@ -356,8 +356,8 @@ def begin_pressure(
 
 
 @kernel
-def keep_w(shape: RowShape, a: PressureArrays) -> None:
-    """Take over W, beyond open ends that of the last segment."""
+def keep_w(shape: RowShape, u: Floats, a: PressureArrays) -> None:
+    """Take over W; beyond an open end it is as in the last segment, at an inlet that along the bottom."""
     low, high = shape.inner
     for i in range(low, high):
         a.w[i] = a.next_w[i]
@@ -365,5 +365,8 @@ def keep_w(shape: RowShape, a: PressureArrays) -> None:
         a.w[low - 1], a.w[high] = 0.0, 0.0
         if shape.kind[0] == OPEN:
             a.w[low - 1] = a.w[low]
+        elif shape.kind[0] == INFLOW:
+            for f in range(a.w.shape[1]):
+                a.w[low - 1, f] = a.tilt[0] * u[0, min(f, u.shape[1] - 1)]
         if shape.kind[len(shape.kind) - 1] == OPEN:
             a.w[high] = a.w[high - 1]

@@ -8,7 +8,7 @@ points instead of five (design/0030).
 
 import numpy as np
 
-from ryusa.model.row import INFLOW, OPEN
+from ryusa.model.row import INFLOW, OPEN, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.exchange import Ints
@@ -65,7 +65,7 @@ def pass_faces(shape: RowShape, content: Floats, u: Floats, sign: Floats, a: Pre
     taken = a.within
     taken[:], a.slope[:] = 0.0, 0.0
     for j in range(len(shape.left)):
-        if a.tilt[j] == 0.0 or shape.kind[j] != OPEN:
+        if a.tilt[j] == 0.0 or shape.kind[j] == WALL:
             continue
         left, right, half = shape.left[j], shape.right[j], 0.5 * a.tilt[j]
         for k in range(max(shape.first[left], shape.first[right]), u.shape[1]):

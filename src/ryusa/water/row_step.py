@@ -330,7 +330,7 @@ def advance_row(
                 scalars[FAULT_AT] = worst_segment(shape, pressure)
                 return NOT_PROJECTED
             book_projection(p, shape, dt, water, pressure, energy.books, rows, out)
-            keep_w(shape, pressure)
+            keep_w(shape, water.u, pressure)
             scalars[TURNS] += turns
         scalars[STEPS] += 1.0
         scalars[COURANT_MET] = max(scalars[COURANT_MET], speed * dt / shape.dx)
