@@ -54,9 +54,8 @@ class PressureArrays(NamedTuple):
     within: Floats  # its mean in the cells, shape (n_all, n)
     thick: Floats  # P times the wet thickness of the cells [m3/s2]
     rub: Floats  # upward momentum that viscosity brings, over density [m3/s2], shape (n_station, n + 1)
-    brought: (
-        Floats  # W that each cell of a station carries to the faces below and above it, (2, n_station, n)
-    )
+    passed: Floats  # the same that flows along x carries
+    brought: Floats  # W that a cell of a station carries to the faces below and above it, (2, n_station, n)
     grids: Multigrid
 
     @staticmethod
@@ -66,7 +65,7 @@ class PressureArrays(NamedTuple):
         tilt = (shape.bottom[shape.right] - shape.bottom[shape.left]) / shape.dx
         cells, faces, at = (segments, n), (segments, n + 1), (stations, n)
         shapes = [*[faces] * 5, cells, *[at] * 8, faces, *[cells] * 7, faces, cells, cells]
-        shapes += [(stations, n + 1), (2, *at)]
+        shapes += [(stations, n + 1), (stations, n + 1), (2, *at)]
         return PressureArrays(
             np.zeros(faces), np.zeros(cells), tilt, bool((tilt != 0.0).any()),
             np.zeros(segments, np.int64), np.zeros(segments, np.int64), *map(np.zeros, shapes),
@@ -234,7 +233,7 @@ def carry_w(
     """What passes each station of the upward momentum: W that the flow carries, and what viscosity brings."""
     for j in range(len(shape.left)):
         left, right = shape.left[j], shape.right[j]
-        a.rub[j, :] = 0.0
+        a.rub[j, :], a.passed[j, :] = 0.0, 0.0
         for k in range(p.n):
             flow = work.flux[j, k]
             up = left if flow > 0.0 else right
@@ -245,7 +244,9 @@ def carry_w(
             for side in range(2):
                 f = k + side
                 slope = limited_slope(a.w[up, f] - a.w[before, f], a.w[after, f] - a.w[up, f])
-                a.brought[side, j, k] = a.w[up, f] + (half if flow > 0.0 else -half) * slope
+                speed = a.w[up, f] + (half if flow > 0.0 else -half) * slope
+                a.brought[side, j, k] = speed
+                a.passed[j, f] += 0.5 * flow * speed
                 if shape.kind[j] == OPEN:
                     a.rub[j, f] -= rubs * (a.w[right, f] - a.w[left, f])
 
@@ -262,16 +263,15 @@ def gather_w(
     right: Floats,
 ) -> None:
     """Momentum of the faces of a segment before stresses and pressure, over density [m2/s], into `right`."""
-    first, top, per = shape.first[i], a.top[i], dt / shape.dx
-    right[:] = 0.0
-    for k in range(first, p.n):
-        for side in range(2):
-            f = min(k + side, top)
-            right[f] += 0.5 * work.old[i, k] * a.w[i, k + side]
-            for j, sign in ((shape.west[i], per), (shape.east[i], -per)):
-                right[f] += sign * 0.5 * work.flux[j, k] * a.brought[side, j, k]
-    for f in range(first + 1, p.n + 1):
-        right[min(f, top)] += per * (a.rub[shape.west[i], f] - a.rub[shape.east[i], f])
+    first, top, n, per = shape.first[i], a.top[i], p.n, dt / shape.dx
+    west, east = shape.west[i], shape.east[i]
+    for f in range(first + 1, n):
+        right[f] = 0.5 * (work.old[i, f - 1] + work.old[i, f]) * a.w[i, f]
+        right[f] += per * (a.passed[west, f] + a.rub[west, f] - a.passed[east, f] - a.rub[east, f])
+    for f in range(top + 1, n):  # the uppermost face has all above it
+        right[top] += right[f]
+    right[top] += 0.5 * work.old[i, n - 1] * a.w[i, n]
+    right[top] += per * (a.passed[west, n] + a.rub[west, n] - a.passed[east, n] - a.rub[east, n])
 
 
 @kernel
@@ -296,39 +296,31 @@ def predict_w(
             continue
         low, middle, high, right = work.step.a, work.step.b, work.step.c, work.step.r
         gather_w(p, shape, dt, water, work, a, i, right)
+        per_dt, per_dz2 = 1.0 / dt, 1.0 / p.dz**2
         for f in range(first + 1, top + 1):
-            k, part = f - 1, a.part[i, f]  # the row of the system, and the water
+            k, part, per_gap = f - 1, a.part[i, f], 1.0 / a.gap[i, f]  # the row of the system, and the water
             below = 0.5 * (work.q[i, f - 1] + work.q[i, f])
             above = 0.5 * (work.q[i, f] + work.q[i, f + 1]) if f < top else 0.0
-            speed = abs(a.w[i, f])
-            a.drag[i, f] = (
-                0.5
-                * a.gap[i, f]
-                / part
-                * (
-                    matrix.linear[i, f - 1]
-                    + matrix.linear[i, f]
-                    + (matrix.quadratic[i, f - 1] + matrix.quadratic[i, f]) * speed
-                )
-            )
-            under = water.content[i, f - 1] * a.nu[i, f - 1] / p.dz**2
-            over = water.content[i, f] * a.nu[i, f] / p.dz**2 if f < top else 0.0
+            drag = matrix.linear[i, k] + matrix.linear[i, f]
+            drag += (matrix.quadratic[i, k] + matrix.quadratic[i, f]) * abs(a.w[i, f])
+            a.drag[i, f] = 0.5 * a.gap[i, f] / part * drag
+            under = water.content[i, k] * a.nu[i, k] * per_dz2
+            over = water.content[i, f] * a.nu[i, f] * per_dz2 if f < top else 0.0
             low[k] = -max(below, 0.0) - under
             high[k] = min(above, 0.0) - over
-            middle[k] = part / dt + max(above, 0.0) - min(below, 0.0) + part * a.drag[i, f] + under + over
-            rise = (a.p[i, f] if f < top else 0.0) - a.p[i, f - 1]
-            here = right[f] / dt - rise * part / a.gap[i, f]
-            a.pull[i, f] = dt / (1.0 + a.drag[i, f] * dt) / a.gap[i, f]
-            if f == first + 1:
-                here -= low[k] * bottom
-            right[k] = here
+            middle[k] = part * (per_dt + a.drag[i, f]) + max(above, 0.0) - min(below, 0.0) + under + over
+            rise = (a.p[i, f] if f < top else 0.0) - a.p[i, k]
+            right[k] = right[f] * per_dt - rise * part * per_gap
+            a.pull[i, f] = dt / (1.0 + a.drag[i, f] * dt) * per_gap
+        right[first] -= low[first] * bottom
         for k in range(first + 1, top):
-            e = low[k] / middle[k - 1]
+            middle[k - 1] = 1.0 / middle[k - 1]
+            e = low[k] * middle[k - 1]
             middle[k] -= e * high[k - 1]
             right[k] -= e * right[k - 1]
         a.next_w[i, top] = right[top - 1] / middle[top - 1]
         for f in range(top - 1, first, -1):
-            a.next_w[i, f] = (right[f - 1] - high[f - 1] * a.next_w[i, f + 1]) / middle[f - 1]
+            a.next_w[i, f] = (right[f - 1] - high[f - 1] * a.next_w[i, f + 1]) * middle[f - 1]
         for f in range(top + 1, p.n + 1):
             a.next_w[i, f] = a.next_w[i, top]
 

@@ -16,7 +16,7 @@ from ryusa.water.row_layout import RowMatrix, RowShape, RowWater
 from ryusa.water.row_multigrid import precondition, set_up
 from ryusa.water.row_pressure import PressureArrays, slopes_of
 
-FINE = 1.0e-8  # largest divergence that may be left, times the height of a cell, over sqrt(g dz)
+FINE = 1.0e-6  # largest divergence that may be left, times the height of a cell, over sqrt(g dz)
 ROUND_OFF = 1.0e-13  # the same over that of the predicted speeds: less cannot be had
 MOST_TURNS = 40  # of conjugate gradients; more are a fault
 
