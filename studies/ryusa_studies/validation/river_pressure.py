@@ -265,6 +265,10 @@ def _waves() -> list[Task]:
     ]
 
 
+def _alone() -> Task:
+    return calculation(solitary, seconds=10.0)
+
+
 def _lengths(plan: Plan) -> tuple[float, ...]:
     """Wave numbers times depth over a wavy bed; one when quick."""
     return plan.pick(OVER_WAVES[1:2], OVER_WAVES)
@@ -287,7 +291,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, calculation(solitary, seconds=10.0), *_of_both(collapse), *jump.tasks()]
+    return [*every, _alone(), *_of_both(collapse), *jump.tasks()]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -315,7 +319,7 @@ def _standing(found: Found) -> Finding:
 
 
 def _solitary(found: Found) -> Finding:
-    run = found[calculation(solitary, seconds=8.0)]
+    run = found[_alone()]
     early, late = float(run["height"][7:12].mean()), float(run["height"][-5:].mean())
     mean = float(run["height"][9:].mean())
     speed = float(np.polyfit(run["t"][9:], run["place"][9:], 1)[0])
