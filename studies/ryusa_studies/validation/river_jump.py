@@ -149,5 +149,9 @@ def judge(found: Found) -> Sequence[Finding]:
                 "enters": f"{100.0 * BEFORE:g} cm deep at Fr {', '.join(f'{one:g}' for one in runs)}",
                 "turbulence": "mixing length of the row, nothing fitted",
             },
+            "depths are conjugate within 1.3 %, and the loss by them is that of a jump; heads with the "
+            "speeds at all heights lose more, as a developed flow brings more energy than its mean speed. "
+            "Jumps are short: a surface with one height at each place has no roller that falls back over the "
+            "toe",
         )
     ]  # fmt: skip
