@@ -54,9 +54,10 @@ def differences(one: Path, other: Path) -> list[str]:
         for name in ("x", "v", "q", "momentum", "image"):
             left, right = (np.asarray(getattr(one.bodies, name)) for one in (a, b))
             found += [f"bodies.{name}"] if left.tobytes() != right.tobytes() else []
-    if a.water is not None and b.water is not None:
-        pairs = zip(vars(a.water).items(), vars(b.water).values(), strict=True)
-        found += [f"water.{name}" for (name, left), right in pairs if left.tobytes() != right.tobytes()]
+    if a.fluid is not None and b.fluid is not None:
+        for name in ("t", *a.fluid.flow.fields()):
+            left, right = (np.asarray(getattr(one.fluid, name)) for one in (a, b))
+            found += [f"water.{name}"] if left.tobytes() != right.tobytes() else []
     summaries = [{k: v for k, v in r.summary.items() if k not in NOT_THE_SAME} for r in (a, b)]
     if json.dumps(summaries[0]) != json.dumps(summaries[1]):
         found += [f"summary.{k}" for k in summaries[0] if summaries[0][k] != summaries[1].get(k)]
