@@ -4,8 +4,8 @@ import pytest
 
 import ryusa
 from ryusa.casefile import read_text
-from ryusa.casefile.row.backwater import conjugate_depth
 from ryusa.casefile.row.values import critical_depth, highest_water, jumping, row_plan
+from ryusa.laws.bore import conjugate_depth
 from ryusa.results import schema
 
 CASE = """

@@ -118,6 +118,7 @@ UNITS = {
     ),
     "contact_step.contact_force": "bool, -, -, -, N, N, N, N -> N, N, N, N, N, N",
     "bore.reflected_bore": "m/s, m, m/s2 -> m, m/s",
+    "bore.conjugate_depth": "m, - -> m",
     "debris.equilibrium_concentration": "-, -, kg/m3, kg/m3 -> -",
     "debris.equilibrium_takahashi": "-, -, kg/m3, kg/m3, - -> -",
     "debris.discharge_over_bed": "m2/s, -, - -> m2/s",

@@ -186,3 +186,10 @@ def test_a_run_folder_gives_its_fields_by_name_with_unit_and_axes(made: Any, tmp
             assert f"{name} [{field.unit}]" in repr(found)
     with pytest.raises(AttributeError, match="no 'colour' among the fields of the water"):
         _ = found.colour
+
+
+@pytest.mark.parametrize("kind", [Flow, Fluid])
+def test_a_kind_of_water_that_forgets_something_cannot_be_made(kind):
+    forgetful = type("Forgetful", (kind,), {})
+    with pytest.raises(TypeError, match="abstract"):
+        forgetful()

@@ -1,4 +1,4 @@
-"""The bore that a wall reflects."""
+"""The bore that a wall reflects, and the hydraulic jump."""
 
 import math
 
@@ -32,3 +32,13 @@ def reflected_bore(u: float, h: float, g: float) -> tuple[float, float]:
     largest = 2.0 * math.sqrt(-p / 3.0)
     r = 1.0 / 3.0 + largest * math.cos(math.acos(max(3.0 * q / (p * largest), -1.0)) / 3.0)
     return r * h, math.sqrt(0.5 * g * h * (r + 1.0) / r)
+
+
+@law
+def conjugate_depth(h: float, froude: float) -> float:
+    """Depth behind a hydraulic jump of flow of depth h [m], h/2 (sqrt(1 + 8 Fr^2) - 1) (Belanger 1828).
+
+    >>> round(conjugate_depth(0.0233, 2.70), 3)
+    0.078
+    """
+    return 0.5 * h * (math.sqrt(1.0 + 8.0 * froude**2) - 1.0)

@@ -1,5 +1,6 @@
 """What the water of a run moves in, whatever its kind, and the fields that a run keeps of it."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
@@ -36,41 +37,41 @@ class FluidState(Protocol):
         ...
 
 
-class Flow(ByShape):
+class Flow(ByShape, ABC):
     """What water that feels the grains moves in: cells, bottom, ends, closures; fixed while the scene is."""
 
     GROUP: ClassVar[str]  # of its datasets in a run folder
 
     @property
+    @abstractmethod
     def text(self) -> str:
         """What it is, in words."""
-        raise NotImplementedError
 
+    @abstractmethod
     def account(self, found: Mapping[str, Any]) -> str:
         """What is said at the end of a run of the numbers in its summary."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def interval(self) -> int:
         """Largest coupling interval [steps]."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def places(self) -> Mapping[str, int]:
         """How many places of each kind it has, such as cells."""
-        raise NotImplementedError
 
+    @abstractmethod
     def fields(self) -> Mapping[str, Field]:
         """What a run folder keeps of the water at a frame, by name."""
-        raise NotImplementedError
 
+    @abstractmethod
     def first_surface(self, x: Floats) -> Floats:
         """Height of the surface at the start at places along x [m], same shape; -inf if not given."""
-        raise NotImplementedError
 
+    @abstractmethod
     def tilted(self, g_x: float, g_z: float) -> Self:
         """The same with another gravity along and normal to the x axis [m/s2]."""
-        raise NotImplementedError
 
     def frame_shapes(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the fields of a frame."""

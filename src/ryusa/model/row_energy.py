@@ -14,7 +14,7 @@ class RowTerm(IntEnum):
     Energy given to the water and energy lost by it are positive. The equations are in `water.row_energy`.
     """
 
-    KINETIC = 0  # change of (1/2) rho U**2, summed over stations
+    KINETIC = 0  # change of (1/2) rho U**2 over stations, and with a pressure of its own of (1/2) rho W**2
     POTENTIAL = 1  # change of rho g_z z of the water, without that of the grains
     GRAVITY = 2  # given by gravity along the axis
     DRIVER = 3  # given by an imposed pressure gradient
@@ -29,7 +29,7 @@ class RowTerm(IntEnum):
     FALL = 12  # lost where water falls over a sill, strikes a wall or a dam, or leaves a cell that runs dry
     UPWIND = 13  # lost by momentum that is carried with the speed upstream of a border between cells
     LATE = 14  # lost by the implicit step in time
-    SURFACE = 15  # lost by the explicit surface; negative at times, its sum is not
+    SURFACE = 15  # lost by the explicit surface, of which pressure of its own is one; negative at times
 
 
 N_ROW_TERM = len(RowTerm)

@@ -1,5 +1,6 @@
 """What the rest of ryusa knows of water that moves: one protocol, whatever its kind."""
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, Protocol, Self
 
@@ -27,6 +28,7 @@ class Fluid(Protocol):
     sampled: Floats
 
     @staticmethod
+    @abstractmethod
     def begin(scene: Scene, flow: Any, /, x: Floats, step: int = 0, threads: int = 1) -> "Fluid":
         """Fill the flow of a scene with its first water.
 
@@ -45,12 +47,14 @@ class Fluid(Protocol):
         ...
 
     @staticmethod
+    @abstractmethod
     def resume(
         scene: Scene, flow: Any, found: Any, /, sampled: Floats | None = None, threads: int = 1
     ) -> "Fluid":
         """Go on from a snapshot of this kind, and the water at the grains with it; else as `begin`."""
         ...
 
+    @abstractmethod
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
 
@@ -77,6 +81,7 @@ class Fluid(Protocol):
             self.steps, self.due = self.steps - (self.due - step), step
             self.exchange(x, v, impulse)
 
+    @abstractmethod
     def among(self, x: Floats, step: int) -> Self:
         """The same water at a step at which grains have entered or left, just after an exchange.
 
@@ -93,10 +98,12 @@ class Fluid(Protocol):
         del after
         return False
 
+    @abstractmethod
     def change(self, scene: Scene) -> None:
         """Take over a scene that the timeline changed: its slope, its ends, or removed fixed grains."""
         ...
 
+    @abstractmethod
     def snapshot(self, kept: Floats | None = None) -> FluidState:
         """All that an exact resume needs, beside the water at the grains.
 
@@ -106,10 +113,12 @@ class Fluid(Protocol):
         """
         ...
 
+    @abstractmethod
     def frame(self) -> Mapping[str, NDArray[Any]]:
         """What a run folder keeps of it at a frame: the fields of `scene.flow`."""
         ...
 
+    @abstractmethod
     def surface_at(self, x: Floats) -> Floats:
         """Height of the surface over z = 0 at places along x [m], same shape."""
         ...
@@ -131,14 +140,17 @@ class Fluid(Protocol):
         return 0.0
 
     @property
+    @abstractmethod
     def text(self) -> str:
         """State in a line, for the progress of a run without grains."""
         ...
 
+    @abstractmethod
     def numbers(self) -> dict[str, float | int]:
         """State for the summary of a run; SI."""
         ...
 
+    @abstractmethod
     def warnings(self) -> list[str]:
         """Warnings, one sentence each."""
         ...

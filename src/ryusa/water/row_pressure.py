@@ -14,6 +14,7 @@ from ryusa.model.row import INFLOW, OPEN
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.exchange import Ints
+from ryusa.water.limiter import limited
 from ryusa.water.row_layout import RowMatrix, RowShape, RowWater
 from ryusa.water.row_multigrid import Multigrid
 from ryusa.water.row_station import StationArrays
@@ -74,17 +75,6 @@ class PressureArrays(NamedTuple):
 
 
 @kernel
-def limited_slope(before: float, after: float) -> float:
-    """Slope limiter of van Leer, as `row_step.limited`.
-
-    >>> limited_slope(1.0, 3.0), limited_slope(-1.0, 3.0)
-    (1.5, 0.0)
-    """
-    product = before * after
-    return 2.0 * product / (before + after) if product > 0.0 else 0.0
-
-
-@kernel
 def find_tops(shape: RowShape, wet: Floats, top: Ints) -> None:
     """Find the cell of the surface of each segment."""
     for i in range(len(top)):
@@ -138,10 +128,10 @@ def carry_along(shape: RowShape, dt: float, water: RowWater, work: StationArrays
             through = 0.5 * (flux[west, k] + flux[east, k])
             speed = u[west, k] if through > 0.0 else u[east, k]
             if inner and through > 0.0:
-                slope = limited_slope(u[west, k] - u[before, k], u[east, k] - u[west, k])
+                slope = limited(u[west, k] - u[before, k], u[east, k] - u[west, k])
                 speed += 0.5 * max(1.0 - abs(u[west, k]) * dt / shape.dx, 0.0) * slope
             elif inner and through < 0.0:
-                slope = limited_slope(u[east, k] - u[west, k], u[after, k] - u[east, k])
+                slope = limited(u[east, k] - u[west, k], u[after, k] - u[east, k])
                 speed -= 0.5 * max(1.0 - abs(u[east, k]) * dt / shape.dx, 0.0) * slope
             work.carried[i, k] = through * speed
             work.energy.through[i, k], work.energy.speed[i, k] = through, speed
@@ -243,7 +233,7 @@ def carry_w(
             rubs = 0.25 * content * (a.nu[left, k] + a.nu[right, k]) / shape.dx
             for side in range(2):
                 f = k + side
-                slope = limited_slope(a.w[up, f] - a.w[before, f], a.w[after, f] - a.w[up, f])
+                slope = limited(a.w[up, f] - a.w[before, f], a.w[after, f] - a.w[up, f])
                 speed = a.w[up, f] + (half if flow > 0.0 else -half) * slope
                 a.brought[side, j, k] = speed
                 a.passed[j, f] += 0.5 * flow * speed
@@ -253,15 +243,9 @@ def carry_w(
 
 @kernel
 def gather_w(
-    p: ColumnParameters,
-    shape: RowShape,
-    dt: float,
-    water: RowWater,
-    work: StationArrays,
-    a: PressureArrays,
-    i: int,
-    right: Floats,
-) -> None:
+    p: ColumnParameters, shape: RowShape, dt: float, water: RowWater, work: StationArrays, a:
+    PressureArrays, i: int, right: Floats,
+) -> None:  # fmt: skip
     """Momentum of the faces of a segment before stresses and pressure, over density [m2/s], into `right`."""
     first, top, n, per = shape.first[i], a.top[i], p.n, dt / shape.dx
     west, east = shape.west[i], shape.east[i]

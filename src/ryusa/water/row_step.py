@@ -12,6 +12,7 @@ from ryusa.model.row import INFLOW, OPEN, SAME_DEPTH, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.drive import imposed_gradient
+from ryusa.water.limiter import limited
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
 from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
 from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
@@ -28,20 +29,8 @@ MOST_TAKEN = 0.98  # largest share of the water of a segment that leaves it in a
 FAULT_AT, STEPS, COURANT_MET, TURNS = range(4)
 N_SCALARS = 4
 NOT_PROJECTED = 6  # after those of `momentum_balance` and `row_inlet`: no pressure was found
-DIFFUSED = (
-    0.25  # largest viscosity times dt/dx**2 of a step with a pressure of its own: along x it is explicit
-)
-
-
-@kernel
-def limited(before: float, after: float) -> float:
-    """Slope limiter of van Leer: twice the harmonic mean of two differences, 0 at an extremum.
-
-    >>> limited(1.0, 3.0), limited(-1.0, 3.0)
-    (1.5, 0.0)
-    """
-    product = before * after
-    return 2.0 * product / (before + after) if product > 0.0 else 0.0
+# largest viscosity times dt/dx**2 of a step with a pressure of its own: along x it is explicit
+DIFFUSED = 0.25
 
 
 @kernel

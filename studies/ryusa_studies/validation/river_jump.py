@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.bore import conjugate_depth
 from ryusa.laws.families import BedKind, Mixing, Pressure, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
@@ -38,12 +39,6 @@ LENGTH = Band(3.0, 7.0, "-", "of the depth behind: measured jumps are 4 to 6 lon
 LOSS = at_most(0.05, "5 % of the loss of a jump")
 
 
-def conjugate(depth: float, q: float) -> float:
-    """Depth behind a jump without friction [m], for the depth before it and the discharge [m2/s]."""
-    froude = q / math.sqrt(G * depth**3)
-    return 0.5 * depth * (math.sqrt(1.0 + 8.0 * froude**2) - 1.0)
-
-
 def heads(row: ColumnRow, now: RowState) -> tuple[Floats, Floats]:
     """Depth, and energy head by the speeds at all heights, at the stations between segments [m]."""
     left, right = row.stations_between
@@ -62,7 +57,7 @@ def jump(froude: float, pressure: str) -> dict[str, Floats]:
     there the jump begins.
     """
     q = froude * math.sqrt(G * BEFORE**3)
-    behind = conjugate(BEFORE, q)
+    behind = conjugate_depth(BEFORE, froude)
     dx, dz = BEFORE, BEFORE / 6.0
     n = round(24.0 * behind / dx)
     c = Column(
@@ -74,7 +69,8 @@ def jump(froude: float, pressure: str) -> dict[str, Floats]:
     now = row_at_rest(fast, np.full(n, BEFORE))
     now = advance_row(fast, replace(now, u=np.full_like(now.u, q / BEFORE)), 5.0 * n * dx / (q / BEFORE))
     depth = now.surface[fast.inner]
-    held = conjugate(float(depth[n // 3]), q)
+    here = float(depth[n // 3])
+    held = conjugate_depth(here, q / math.sqrt(G * here**3))
     row = replace(fast, downstream=RowEnd(EndKind.LEVEL, level=held))
     start = row_at_rest(row, np.where(np.arange(n) < n // 3, depth, held))
     speeds = np.where(np.arange(n + 1)[:, None] <= n // 3, now.u, q / held)
@@ -92,16 +88,19 @@ def jump(froude: float, pressure: str) -> dict[str, Floats]:
     end = toe + int(np.argmax(surface[toe:] > first + 0.95 * (second - first)))
     after = min(toe + round(6.0 * second / dx), n - 2)
     lost = float(energy[toe - 1] - energy[after])
+    fast = q / math.sqrt(G * first**3)
+    expected = conjugate_depth(first, fast)
+    of_a_jump = (expected - first) ** 3 / (4.0 * expected * first)
     return {
         "x": row.x, "surface": surface, "energy": energy, "toe": np.array(row.x[toe]),
-        "conjugate": np.array(float(surface[after]) / conjugate(first, q)),
+        "conjugate": np.array(float(surface[after]) / expected),
         "length": np.array((end - toe + 1) * dx / second),
         "by_depths": np.array(
             (first + (q / first) ** 2 / (2.0 * G) - surface[after] - (q / surface[after]) ** 2 / (2.0 * G))
-            / ((conjugate(first, q) - first) ** 3 / (4.0 * conjugate(first, q) * first))
+            / of_a_jump
         ),
-        "loss": np.array(lost / ((conjugate(first, q) - first) ** 3 / (4.0 * conjugate(first, q) * first))),
-        "froude": np.array(q / math.sqrt(G * first**3)),
+        "loss": np.array(lost / of_a_jump),
+        "froude": np.array(fast),
     }  # fmt: skip
 
 

@@ -73,15 +73,6 @@ def _friction_slope(speed: float, depth: float, g: float, rough: float, nu: floa
     return shear**2 / (g * depth)
 
 
-def conjugate_depth(h: float, froude: float) -> float:
-    """Depth behind a hydraulic jump of flow of depth h [m], h/2 (sqrt(1 + 8 Fr^2) - 1) (Belanger 1828).
-
-    >>> round(conjugate_depth(0.0233, 2.70), 3)
-    0.078
-    """
-    return 0.5 * h * (math.sqrt(1.0 + 8.0 * froude**2) - 1.0)
-
-
 def bore_depth(h: float, froude: float) -> float:
     """Depth behind a bore that stops flow of depth h [m] where it meets a wall or water at rest.
 
