@@ -79,12 +79,13 @@ def structures_of(run: Run, t: float) -> tuple[list[Structure], list[str]]:
                         "have no outer side; mend the mesh")  # fmt: skip
         found.append(Structure(name, None, (name,), mesh, _toe(corners[name])))
     if dams:
-        said.insert(0, "water on dams: hydrostatic, from the level beside each face; no blow of a bore, no "
-                    "uplift, no friction")  # fmt: skip
+        how = "hydrostatic, from the level" if row.hydrostatic else "with its own pressure in the cells"
+        said.insert(0, f"water on dams: {how} beside each face; no blow of a bore, no uplift, no friction")
     if wet := [one.name for one in found if one.mesh]:
+        without = "" if row.hydrostatic else ", without the pressure beyond it"
         said.append(
-            f"water on {', '.join(wet)}: hydrostatic, on the outer side of each triangle, none under a foot "
-            "on the floor; the row is uniform across and flows through it, without drag"
+            f"water on {', '.join(wet)}: hydrostatic{without}, on the outer side of each triangle, none under a "
+            "foot on the floor; the row is uniform across and flows through it, without drag"
         )
     if dry := [one.name for one in found if one.dam is None and shapes[one.name] != "mesh"]:
         said.append(f"no water on {', '.join(dry)}: it stands as high on the other side of a sheet")
@@ -92,7 +93,7 @@ def structures_of(run: Run, t: float) -> tuple[list[Structure], list[str]]:
 
 
 def water_on_dam(frames: WaterFrames, dam: RowDam) -> Floats:
-    """Load of the water at rest on a dam at every frame, per width.
+    """Load of the water on a dam at every frame, per width, as it stands beside it or has its own pressure.
 
     Returns
     -------
@@ -113,15 +114,42 @@ def water_on_dam(frames: WaterFrames, dam: RowDam) -> Floats:
         wet = np.clip(level, foot, top) - foot  # height of the face under water
         force = weight * wet * (level - foot - 0.5 * wet)
         lever = (level - foot) * wet**2 / 2.0 - wet**3 / 3.0  # about the foot of the face
-        moment = weight * lever + force * (foot - z_toe)
+        moment = weight * lever
+        if not row.hydrostatic:
+            more, turns = _beyond_on_face(frames, low, foot, top)
+            force, moment = force + more, moment + turns
+        moment = moment + force * (foot - z_toe)
         found[:, 0] += sign * force
         found[:, 3] += sign * moment
     found[:, 2] = found[:, 3]
     for k in range(dam.first, dam.end):
         above = weight * np.maximum(surface[:, k] - floor[k], 0.0) * row.dx
+        if not row.hydrostatic:
+            above = above + frames.pressure[:, k, 0 if row.solid is None else row.solid[k]] * row.dx
         found[:, 1] -= above
         found[:, 2] += above * (row.x[k] - x_toe)
     return found
+
+
+def _beyond_on_face(frames: WaterFrames, low: int, foot: float, top: float) -> tuple[Floats, Floats]:
+    """What the pressure beyond the hydrostatic one adds to a face, beside the segment `low`, at every frame.
+
+    Returns
+    -------
+    Force [N/m] and moment about the foot of the face [N], shape (n_frame,) each. In the cell of the surface
+    the pressure falls on a straight line to zero, as the row has it.
+    """
+    row, n = frames.row, frames.row.column.n
+    dz, z = row.column.dz, row.bottom[low] + row.column.dz * np.arange(n)
+    level, p = frames.surface[:, low], np.array(frames.pressure[:, low])
+    last = np.clip(np.ceil((level - row.bottom[low]) / dz).astype(np.int64) - 1, 0, n - 1)
+    every = np.arange(len(level))
+    h = np.maximum(level - z[last], 0.0)
+    p[every, last] = np.where(last > 0, p[every, last - 1] * 0.5 * h / (h + 0.5 * dz), 0.0)
+    begin = np.maximum(foot, z)
+    end = np.minimum(np.minimum(level, top)[:, None], z + dz)
+    force = p * np.maximum(end - begin, 0.0)
+    return force.sum(axis=1), (force * (0.5 * (begin + end) - foot)).sum(axis=1)
 
 
 def water_on_mesh(run: Run, one: Structure, kept: slice) -> Floats:

@@ -83,7 +83,10 @@ def not_covered(runs: Sequence[Results]) -> list[str]:
     if row is not None and not math.isfinite(across):
         across = float(water["row"].get("width") or math.inf)
     said = {
-        "Scour under a jet, flow round a pier, short waves: the water is hydrostatic.": row is not None,
+        "Scour under a jet, flow round a pier, short waves: the water is hydrostatic.":
+        row is not None and row.row.hydrostatic,
+        "Flow round a pier, air under a nappe, breakers: the surface has one height at each place.":
+        row is not None and not row.row.hydrostatic,
         "The blow of a bore on the dam, uplift, friction of the water.": dams,
         "Whether the dam stands the load.": dams,
         f"Peaks shorter than {case['record']['frames']:g} s, the time between two records.": dams and grains,
@@ -207,7 +210,8 @@ def _model(first: Results) -> str:
     if row is not None:
         water = (
             f"Water: {row.row.n_segment} vertical columns along the stream, of {row.row.column.n} cells, "
-            f"hydrostatic{', with the momentum that grains take and give' * bool(scene.n_grain)}."
+            f"{'hydrostatic' if row.row.hydrostatic else 'with a pressure of its own'}"
+            f"{', with the momentum that grains take and give' * bool(scene.n_grain)}."
         )
     elif scene.column is not None:
         water = f"Water: a column of {scene.column.n} cells that grains slow down and that carries them."
