@@ -84,8 +84,8 @@ def structures_of(run: Run, t: float) -> tuple[list[Structure], list[str]]:
     if wet := [one.name for one in found if one.mesh]:
         without = "" if row.hydrostatic else ", without the pressure beyond it"
         said.append(
-            f"water on {', '.join(wet)}: hydrostatic{without}, on the outer side of each triangle, none under a "
-            "foot on the floor; the row is uniform across and flows through it, without drag"
+            f"water on {', '.join(wet)}: hydrostatic{without}, on the outer side of each triangle, none "
+            "under a foot on the floor; the row is uniform across and flows through it, without drag"
         )
     if dry := [one.name for one in found if one.dam is None and shapes[one.name] != "mesh"]:
         said.append(f"no water on {', '.join(dry)}: it stands as high on the other side of a sheet")
