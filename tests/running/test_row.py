@@ -15,6 +15,7 @@ from ryusa.casefile import explain
 from ryusa.casefile.read import read_text
 from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.errors import CaseError, ResultsError, WaterError
+from ryusa.formats.grains import table_of_frame
 from ryusa.measure.long_section import long_section
 from ryusa.measure.water_energy import water_energy
 from ryusa.report.page import report_page
@@ -105,6 +106,26 @@ def test_the_discharge_of_a_frame_is_what_passed_in_its_step_at_open_ends_too(tm
     assert found is not None
     assert np.allclose(np.diff(found.passed, axis=0) / 0.005, found.discharge[1:], rtol=1e-9, atol=1e-12)
     assert (found.discharge[-1, [0, -1]] > 0.01).all()
+
+
+def test_a_run_with_a_pressure_of_its_own_keeps_it_and_is_resumed_with_the_same_bits(
+    tmp_path: Path, stop_at: Any
+) -> None:
+    full = {"water.row.pressure": "full", "stop.time": "0.5 s"}
+    whole = run(tmp_path / "whole", WEIR, full)
+    found = whole.row
+    assert found is not None
+    cells = 0.5 * (found.w_faces[:, :, 1:] + found.w_faces[:, :, :-1])
+    assert np.allclose(found.w[:, 1:-1], 0.5 * (cells[:, 1:] + cells[:, :-1]), rtol=0.0, atol=1e-15)
+    assert np.abs(found.w[-1]).max() > 0.01
+    assert np.abs(found.pressure[-1]).max() > 1.0  # Pa
+    assert (found.pressure[-1][found.content[-1] == 0.0] == 0.0).all()
+    stop_at(17)
+    run(tmp_path / "run", WEIR, full)
+    assert run(tmp_path / "run", WEIR, full, resume=True).complete
+    assert differences(whole.folder, tmp_path / "run") == []
+    with pytest.raises(ResultsError, match="water alone, and no grain to write"):
+        table_of_frame(whole, -1)
 
 
 def test_the_energy_account_of_the_water_closes(weir: Results) -> None:

@@ -13,7 +13,7 @@ from ryusa.casefile.contact.values import timing
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.row.values import row_plan, segments_of, stream, water_alone
-from ryusa.laws.families import ContactTiming
+from ryusa.laws.families import ContactTiming, Pressure
 
 # The rule of thumb, on one core of an ordinary machine; within a factor 1.5 for saltation, box, heap and
 # dense flows:
@@ -27,6 +27,7 @@ SECONDS_PER_EXCHANGE = 2.0e-4  # of momentum with a column
 SECONDS_PER_EXCHANGE_IN_ROW = 1.0e-3  # with a row of 1 to 8 segments, within a factor 1.4
 SECONDS_PER_GRAIN_EXCHANGED = 2.5e-7
 SECONDS_PER_ROW_CELL = 1.5e-7  # of a cell of a row of columns and step of the water
+OF_PRESSURE = 2.7  # times that with a pressure of its own (benchmarks/row_pressure.py)
 WITHIN = 2.0  # factor within which the rule of thumb holds on a machine that does nothing else
 # From the 639 runs of the standard level of the paper's ledger, seeds 1 to 3, two at a time on two cores of
 # an AMD EPYC: 43 core minutes in all, estimated as 46; for one set-up the estimate is right within a factor
@@ -114,10 +115,12 @@ def kind_of_run(case: Case, threads: int = 1, engine: str = "cpu") -> str:
         water = "water alone, row of columns" if water_alone(case) else "row of columns"
     elif profile == "column":
         water = "column of water"
+    own = case.row is not None and case.row.pressure != Pressure.HYDROSTATIC.word
     exact = "within steps" if timing(case) is ContactTiming.EXACT else "at steps"
     words = ["plane" if case.motion.plane else "3D", water, *(["fed"] if case.feeds else [])]
     words += [] if water_alone(case) else [f"{case.contact.law} contacts that begin {exact}"]
     words += [] if case.rolling.model == "none" else ["rolling friction"]
+    words += ["a pressure of its own"] if own else []
     words += ["pressed walls"] if any(one.servo is not None for one in case.walls) else []
     return ", ".join([*words, engine, f"{threads} thread{'s' if threads > 1 else ''}"])
 
@@ -129,7 +132,10 @@ def seconds_per_step(case: Case, derived: Derived) -> float:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
     steps = 1 if water_alone(case) or case.water is None else case.column.interval
     per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere
-    per_step += SECONDS_PER_ROW_CELL * cells_of_row(case) / steps
+    per_cell = SECONDS_PER_ROW_CELL
+    if case.row is not None and case.row.pressure != Pressure.HYDROSTATIC.word:
+        per_cell *= OF_PRESSURE
+    per_step += per_cell * cells_of_row(case) / steps
     if case.water is not None and case.water.profile == "column" and not water_alone(case):
         exchange = SECONDS_PER_EXCHANGE if case.row is None else SECONDS_PER_EXCHANGE_IN_ROW
         per_step += (exchange + SECONDS_PER_GRAIN_EXCHANGED * derived.n_sphere) / steps

@@ -16,8 +16,8 @@ from ryusa.spelling import known_word
 
 FEW_METRES = 3.0  # span of lengths from which they are drawn in metres, below in centimetres [m]
 MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s [m2/s]
-WATER, LINE, GROUND, HEAD = "#0072B2", "#D55E00", "#8c6d3f", "#CC79A7"
-DASHED = (0, (5, 2))
+WATER, LINE, GROUND, HEAD = "#0072B2", "#D55E00", "#8c6d3f", "#7b1f6a"
+DASHED, DOTTED = (0, (5, 2)), (0, (2.5, 1.5))
 FAST = 6.0  # Froude number up to which its axis goes, or 1.2 times that of MOST wet segments: no film counts
 FILM = 0.01  # of the greatest depth, below which water does not count for the ends of axes
 SHARE = 0.995  # of the values that a colour scale covers
@@ -153,7 +153,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     along, under, top = _over_segments(sides, wet, wet[1:] & wet[:-1], x, bottom, surface)
     axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
-    if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
+    if found.grains and (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
         level = np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)  # not over the face of a dam
         joined = loose[1:] & loose[:-1] & level
         at, low_of, high_of = _over_segments(sides, loose, joined, x, floor, bed)
@@ -166,7 +166,7 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     if found.pressure_head is not None:
         head = np.where(wet, found.elevation(found.pressure_head) * scale, np.nan)
-        axes.plot(x, head, color=HEAD, lw=0.8, label="pressure head at the floor")
+        axes.plot(x, head, color=HEAD, lw=1.0, ls=DOTTED, zorder=3, label="pressure head at the floor")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
     flows = np.where(wet & (found.critical > THIN), critical, np.nan)
     for k, (at, part) in enumerate(zip(np.split(x, steps), np.split(flows, steps), strict=True)):

@@ -121,6 +121,10 @@ def table_of_frame(run: "Results", k: int) -> GrainTable:
     """
     frames, t = run.frames, float(run.frames.t[k])
     scene = run.scene_at(t)
+    if not scene.n_grain + scene.n_fixed:
+        raise ResultsError(
+            "the run has water alone, and no grain to write: ryusa measure RUN WHAT --csv has numbers of it"
+        )
     column = scene.column if scene.row is None else scene.row.column
     there = np.flatnonzero(scene.fixed_active)
     every, n_grain, n_fixed = frames.x_wrapped[k], scene.n_grain, len(there)

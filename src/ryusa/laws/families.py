@@ -311,7 +311,7 @@ class Pressure(Family, key="water.row.pressure"):
     """Pressure of the water along a row of columns."""
 
     HYDROSTATIC = (0, "hydrostatic", None, "the weight of the water above, whatever its vertical motion")
-    FULL = (1, "full", None, "with what turns the water up and down: waves, nappes, jumps",
+    FULL = (1, "full", None, "with what turns the water up and down: waves, sills, jumps",
         "design/0030; Casulli 1999; Stelling & Zijlema 2003")
 
 

@@ -217,6 +217,9 @@ class _Levels:
         for dam in frames.row.dams:
             if not dam.porous and dam.first > 0:
                 level, k = np.asarray(frames.surface)[kept, dam.first - 1], dam.first
+                if not frames.row.hydrostatic:  # beyond where the surface is drawn down, by four heads
+                    away = round(4.0 * max(float((level - frames.floor[k]).mean()), 0.0) / frames.row.dx)
+                    level = np.asarray(frames.surface)[kept, max(dam.first - 1 - away, 0)]
                 for what, floor in (("depth", frames.floor[k - 1]), ("head", frames.floor[k])):
                     items.append(average(f"{dam.name}: {what}", "m", [level - floor], window))
         last = long_section(results)

@@ -188,19 +188,21 @@ class RowCoupling(Fluid):
         row, state, lowest = self.row, self.state, self.row.solid_cells()
         stations = row.stations_between
         sill = np.maximum(lowest[stations[0]], lowest[stations[1]])
-        own = dict[str, Floats]()
+        own, w = dict[str, Floats](), state.profiles[:, 1].copy()
         if state.pressure is not None and state.w is not None:
             own = {
                 "pressure": row.column.rho_w * state.pressure[row.inner],
                 "w_faces": state.w[row.inner].copy(),
             }
+            in_cells = 0.5 * (state.w[:, 1:] + state.w[:, :-1])
+            w = 0.5 * (in_cells[stations[0]] + in_cells[stations[1]])
         return own | {
             "surface": state.surface[row.inner] - row.column.z_low + row.bottom,
             "volume": state.volume[row.inner].copy(),
             "content": state.content[row.inner].copy(),
             "phi": np.array(self.phi),
             "u": state.u.copy(),
-            "w": state.profiles[:, 1].copy(),
+            "w": w,
             "discharge": self.passing.copy(),
             "passed": state.passed.copy(),
             "tau": state.edges[np.arange(len(sill)), 0, sill],

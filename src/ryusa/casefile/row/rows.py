@@ -92,11 +92,16 @@ def _grid(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
     )
     ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
+    floor = plan.bottom.copy()
+    for dam in keys.dams:
+        if dam.concentration is None:
+            taken = slice(*dam_span(plan, dam))
+            floor[taken] = np.maximum(floor[taken], crest_of(plan, dam))
     return [
         *_segments(case, ends),
         number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
         number(
-            "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",
+            "water", "water at the start", float((plan.start - floor).clip(0.0).sum() * plan.dx), "m2",
             "per width",
         ),
     ]  # fmt: skip
