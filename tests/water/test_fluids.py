@@ -12,7 +12,7 @@ import pytest
 from tests.running.test_water import G, bits, falling, stepping
 from tests.water.current import Current, CurrentState, Drift
 
-from ryusa.laws.families import Buoyancy, SurfaceRule
+from ryusa.laws.families import Buoyancy, Pressure, SurfaceRule
 from ryusa.model import Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.flow import Field, Flow
@@ -48,14 +48,17 @@ class LayeredDrift(Drift):
 
 def flow_of(kind: str, scene: Scene) -> Flow:
     column = replace(scene.column, surface=SurfaceRule.VOLUME)  # type: ignore[type-var]
-    if kind == "row":
+    if kind in ("row", "row with pressure"):
         high = np.full(SEGMENTS, column.z_surface)
-        return ColumnRow(column, scene.period[0] / SEGMENTS, np.zeros(SEGMENTS), G, start=high)
+        pressure = Pressure.HYDROSTATIC if kind == "row" else Pressure.FULL
+        return ColumnRow(
+            column, scene.period[0] / SEGMENTS, np.zeros(SEGMENTS), G, start=high, pressure=pressure
+        )
     of = {"current": Current, "layered": Layered}.get(kind)
     return column if of is None else of(0.1, column.depth, column.area)
 
 
-@pytest.fixture(params=["column", "row", "current", "layered"])
+@pytest.fixture(params=["column", "row", "row with pressure", "current", "layered"])
 def made(request: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Scene, State]]:
     """Grains that fall into water of each kind."""
     for name, flow, fluid in (("current", Current, Drift), ("layered", Layered, LayeredDrift)):

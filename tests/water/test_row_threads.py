@@ -9,7 +9,7 @@ from tests.water.test_row_dams import N, dammed
 from tests.water.test_row_grains import D, cloud
 
 from ryusa.engine.cpu.engine import CpuEngine
-from ryusa.laws.families import Fluctuations, Hindrance
+from ryusa.laws.families import Fluctuations, Hindrance, Pressure
 from ryusa.model.fluid import N_IMPULSE
 from ryusa.water import row_threads
 from ryusa.water.row_grains import GrainsInRow
@@ -18,12 +18,13 @@ from ryusa.water.row_threads import RowThreads, equal_parts, equal_work
 STATE = "u", "volume", "content", "wet", "surface", "passed", "profiles", "edges", "budgets"
 
 
+@pytest.mark.parametrize("pressure", list(Pressure))
 @pytest.mark.parametrize("fluctuations", [Fluctuations.NONE, Fluctuations.RANDOM_WALK])
-def test_the_bits_do_not_depend_on_threads(monkeypatch, fluctuations):
+def test_the_bits_do_not_depend_on_threads(monkeypatch, fluctuations, pressure):
     """Grains that move beside a dam, over an inclined bottom."""
     monkeypatch.setattr(row_threads, "SHARED", 1)
     row, at = dammed(0.05, False)
-    row = replace(row, column=replace(row.column, fluctuations=fluctuations, seed=4))
+    row = replace(row, column=replace(row.column, fluctuations=fluctuations, seed=4), pressure=pressure)
     made, first = cloud(at=at, length=math.inf, tilt=0.05, hindrance=Hindrance.DI_FELICE)
     made = replace(made, world_low=(-math.inf,) * 3)
     state = GrainsInRow.begin(made, row, at).at_rest(np.full(N, 0.05))

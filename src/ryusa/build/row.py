@@ -55,7 +55,8 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
     if keys is None or wet is None:
         return None
     if (column := column_of(case, derived, placement)) is not None:
-        return _among_grains(case, replace(column, surface=SurfaceRule.VOLUME), placement.period[0])
+        column, pressure = replace(column, surface=SurfaceRule.VOLUME), Pressure.of(keys.pressure)
+        return _among_grains(case, column, pressure, placement.period[0])
     plan = row_plan(case)
     solid, porous, dams = _dams(case, plan)
     row = ColumnRow(
@@ -74,12 +75,14 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
     return row
 
 
-def _among_grains(case: Case, column: Column, period: float) -> ColumnRow:
+def _among_grains(case: Case, column: Column, pressure: Pressure, period: float) -> ColumnRow:
     """A periodic row over a bed of grains, with the surface of one column over the same bed."""
     x_low, dx, n = segments_of(case)
     g_z = case.motion.gravity * math.cos(slope(case.motion))
     bottom = np.full(n, column.z_low)
-    row = ColumnRow(column, dx, bottom, g_z, x_low=x_low, start=np.full(n, column.z_surface))
+    row = ColumnRow(
+        column, dx, bottom, g_z, x_low=x_low, start=np.full(n, column.z_surface), pressure=pressure
+    )
     if faults := row.refuses():
         raise CaseError("water.row", None, "; ".join(faults))
     if faults := row.refuses_grains(Buoyancy.STRESS, period):  # what else it refuses, the case file did

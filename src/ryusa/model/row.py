@@ -289,11 +289,6 @@ class ColumnRow(Flow):
     def refuses_grains(self, buoyancy: Buoyancy, period: float) -> tuple[str, ...]:
         """Reasons why it cannot carry grains of a period along x [m], one sentence each; () if it can."""
         faults: list[str] = []
-        if not self.hydrostatic:
-            faults.append(
-                f"water.row.pressure = {self.pressure.word!r}: for water alone; with grains take "
-                f"{Pressure.HYDROSTATIC.word!r}"
-            )
         why = {
             Buoyancy.WEIGHT: "counts the slope of the surface twice",
             Buoyancy.PRESSURE: "lets still water among grains run down an inclined axis",

@@ -218,7 +218,8 @@ def shape_of(row: ColumnRow) -> RowShape:
     steep = 1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2
     return RowShape(
         left, right, west, east, row.solid_cells(), row.cells_of_dams(), kind, bottom,
-        steep, steep if row.hydrostatic else np.ones(len(left)), (row.inner.start, row.inner.stop),
+        steep, steep if row.hydrostatic else np.ones(len(left)), not row.hydrostatic,
+        (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import DENSEST
 from ryusa.water.drive import DISCHARGE
 from ryusa.water.eddies import turbulence_of_cells
-from ryusa.water.exchange import FOUR
+from ryusa.water.exchange import FOUR, Ints
 from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
 from ryusa.water.row_grain_sums import MetByGrains
@@ -45,7 +45,7 @@ from ryusa.water.slice_sums import (
 )
 
 SLOW = 60.0  # slip times d/nu at which both parts of drag, 24 nu/d + 0.4 w, are alike
-U_TAU_SQUARE, DRIFT = 7, 8  # columns of `table_of` behind those of `sample`
+U_TAU_SQUARE, DRIFT, PUSH, MOVES = 7, 8, 9, 10  # columns of `table_of` behind those of `sample`
 
 
 class StationForces(NamedTuple):
@@ -57,6 +57,7 @@ class StationForces(NamedTuple):
     fixed: Floats  # the part of `force` on fixed grains [N/m3]
     phi: Floats  # concentration of all grains in the segments [-], shape (n_segment, n)
     force_z: Floats  # force along z in the segments [N/m3]
+    free_z: Floats  # the part of it on free grains
 
 
 class RowTold(NamedTuple):
@@ -127,13 +128,13 @@ def act_on_stations(
 
     Notes
     -----
-    Along an inclined bottom the balance of a station is divided by `steep`, and drag and stress keep their
+    Along an inclined bottom the balance of a station is divided by `inertia`, and drag and stress keep their
     size then, but the push of the surface's slope does not.
     """
     volume = area * p.dz
     for j in range(len(shape.left)):
         a, b = shape.left[j], shape.right[j]
-        level = 1.0 - 1.0 / shape.steep[j]
+        level = 1.0 - 1.0 / shape.inertia[j]
         for k in range(p.n):
             given = 0.5 * (sums[GIVEN_X, a, k] / volume + sums[GIVEN_X, b, k] / volume)
             drag = 0.5 * (sums[GIVEN_DRAG, a, k] / volume + sums[GIVEN_DRAG, b, k] / volume)
@@ -147,8 +148,8 @@ def act_on_stations(
             acts.phi_w[j, k] = 0.5 * (sums[SOLID_W, a, k] / volume + sums[SOLID_W, b, k] / volume)
     for i in range(len(shape.bottom)):
         for k in range(p.n):
-            acts.force_z[i, k] = sums[GIVEN_Z, i, k] / volume
-            acts.force_z[i, k] += sums_fixed[2, i, k] / volume
+            acts.free_z[i, k] = sums[GIVEN_Z, i, k] / volume
+            acts.force_z[i, k] = acts.free_z[i, k] + sums_fixed[2, i, k] / volume
 
 
 @kernel
@@ -327,10 +328,11 @@ def table_of(shape: RowShape, told: RowTold, turbulence: Floats) -> Floats:
     """What grains are told of the cells of the segments, shape (n_segment, n, 8 or 12).
 
     `turbulence`, of `turbulence_at_stations`, goes to U_TAU_SQUARE and DRIFT; of the length 0 without
-    fluctuations.
+    fluctuations. PUSH and MOVES, for `press_grains`, are there with a pressure of its own.
     """
     turbulent = len(turbulence) > 0
-    table = np.zeros((told.phi.shape[0], told.phi.shape[1], 3 * FOUR if turbulent else 2 * FOUR))
+    wide = turbulent or shape.own
+    table = np.zeros((told.phi.shape[0], told.phi.shape[1], 3 * FOUR if wide else 2 * FOUR))
     of_both_stations(shape, told.u_free, table[:, :, 0])
     of_both_stations(shape, told.stations[:, ROW_SHEAR], table[:, :, 2])
     of_both_stations(shape, told.stations[:, ROW_DU_DT], table[:, :, 4])
@@ -346,6 +348,39 @@ def table_of(shape: RowShape, told: RowTold, turbulence: Floats) -> Floats:
 
 
 @kernel
+def press_grains(
+    p: ColumnParameters, shape: RowShape, c_m: float, solid: Floats, told: RowTold, rise: Floats,
+    within: Floats, top: Ints, table: Floats,
+) -> None:  # fmt: skip
+    """Tell the grains the pressure in `table` of `table_of`, instead of the force that balances drag upwards.
+
+    Parameters
+    ----------
+    c_m : coefficient of the added mass [-].
+    solid : concentration of a porous solid [-], (n_segment, n); how water in it accelerates is not told.
+    rise, within : rise of P along x at the stations, and upwards in the cells, of `find_rises` [m/s2].
+    top : cells of the surface.
+
+    Notes
+    -----
+    Where the water rests, the force upwards is what `table` had: the pressure bears the drag. Water that
+    accelerates with dW/dt = - dP/dz - N/(rho eps) takes the added mass along.
+    """
+    for i in range(len(table)):
+        west, east, first = shape.west[i], shape.east[i], shape.first[i]
+        for k in range(p.n):
+            push = -0.5 * p.rho_w * (rise[west, k] + rise[east, k])
+            table[i, k, PUSH], table[i, k, MOVES] = push, 0.0
+            table[i, k, 5] += push
+            if not (first <= k <= top[i] and top[i] > first):
+                continue
+            lift = -p.rho_w * within[i, k] * (2.0 if k == first else 1.0)  # whose bottom has no face
+            bears = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
+            moves = 0.0 if solid[i, k] > 0.0 else c_m * (lift - bears)
+            table[i, k, 6], table[i, k, MOVES] = lift + moves, moves
+
+
+@kernel
 def means_at_grains(
     p: ColumnParameters, shape: RowShape, cut: SliceArrays, places: GrainPlaces, told: RowTold,
     table: Floats, met: MetByGrains,
@@ -358,6 +393,8 @@ def means_at_grains(
     gradients_at_grains(shape, cut, places, told.gradient, -p.rho_w * p.g_x, met.gradient)
     for i in range(len(at)):
         met.u[i] = at[i, 0]
+        if shape.own:
+            met.push[i], met.moves[i] = at[i, PUSH], at[i, MOVES]
         at[i, 1] += at[i, 0] * places.tilt[i]
         at[i, 5] += met.gradient[i]
     return at

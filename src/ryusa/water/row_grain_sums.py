@@ -30,12 +30,13 @@ class MetByGrains(NamedTuple):
     per: Floats  # one over it, 0 for a dry grain [1/m3]
     u: Floats  # mean speed along x [m/s]
     gradient: Floats  # pressure gradient [Pa/m]
+    push: Floats  # force along x by the pressure of its own that a row may have [N/m3]
+    moves: Floats  # and upwards on the added mass, by water that accelerates [N/m3]
 
     @staticmethod
     def of(n_grain: int) -> "MetByGrains":
         """Arrays for a number of grains, not filled."""
-        submerged, per, u, gradient = np.zeros((4, n_grain))
-        return MetByGrains(submerged, per, u, gradient)
+        return MetByGrains(*np.zeros((6, n_grain)))
 
 
 @kernel
@@ -43,15 +44,22 @@ def amounts_given(
     shape: RowShape, impulse: Floats, sampled: Floats, met: MetByGrains, grains: GrainNumbers,
     cut: SliceArrays, per_dt: float,
 ) -> Floats:  # fmt: skip
-    """What each grain gives to the water, averaged over an interval, shape (n_grain, N_GIVEN)."""
+    """What each grain gives to the water, averaged over an interval, shape (n_grain, N_GIVEN).
+
+    A pressure of its own pushes water and grains each by their share, so that its push is nothing given.
+    """
     amounts = np.zeros((len(met.u), N_GIVEN))
     four = given_by_grains(impulse, met.u, grains.archimedes, sampled, per_dt)
-    sloping = shape.steep.max() > 1.0
+    sloping = shape.inertia.max() > 1.0
     for i in range(len(amounts)):
         for c in range(N_GIVEN - 1):
             amounts[i, c] = four[i, c]
         if sloping:
             amounts[i, N_GIVEN - 1] = grains.solid[i] * met.submerged[i] / cut.whole[i] * met.gradient[i]
+        if shape.own:
+            volume = grains.solid[i] * met.submerged[i] / cut.whole[i]
+            amounts[i, 0] -= volume * met.push[i]
+            amounts[i, 1] += volume * met.moves[i]
     return amounts
 
 

@@ -36,6 +36,7 @@ from ryusa.water.row_exchange import (
     leave_dry_ends,
     means_at_grains,
     meet_within_step,
+    press_grains,
     rates_at_stations,
     split_budgets,
     table_of,
@@ -44,6 +45,8 @@ from ryusa.water.row_exchange import (
 )
 from ryusa.water.row_grain_sums import MetByGrains, sum_grains_in_row
 from ryusa.water.row_layout import RowEnds, RowWater
+from ryusa.water.row_pressure import find_rises
+from ryusa.water.row_pressure_grains import set_grains
 from ryusa.water.row_station import largest_residual
 from ryusa.water.row_sums import (
     N_ROW_SUM,
@@ -173,6 +176,7 @@ class GrainsInRow:
         """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
         grains = GrainsInRow.begin(scene, row, np.array(found.x), state, threads)
         grains.told.w[:], grains.told.force_z[:], grains.told.u_free[:] = found.w, found.force_z, found.u
+        grains._sample(state)  # which notes what each grain met, for what it gives
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
 
@@ -236,6 +240,12 @@ class GrainsInRow:
     def phi(self) -> Floats:
         """Concentration of grains in the segments, fixed ones included [-], shape (n_segment, n)."""
         return self.told.phi[self.row.inner]
+
+    @property
+    def _yields(self) -> float:
+        """Density of the water over that of the grains and their added mass, in the mean [-]."""
+        inertia = float(self._grains.inertia.sum())
+        return self._laws.rho_w * float(self._grains.solid.sum()) / inertia if inertia > 0.0 else 0.0
 
     def at_rest(self, surface: Floats) -> RowState:
         """Water at rest among the grains up to the surface over the x axis [m], shape (n_segment,)."""
@@ -308,8 +318,11 @@ class GrainsInRow:
         for acting in (sums[:SOLID], sums[DRAG_NOW:], fixed):
             leave_dry_ends(shape, told.wet, acting)
         force, slope, phi_w, part = np.zeros((4, stations, p.n))
-        acts = StationForces(force, slope, phi_w, part, told.phi, told.force_z)
+        free_z = np.zeros((segments, p.n))
+        acts = StationForces(force, slope, phi_w, part, told.phi, told.force_z, free_z)
         act_on_stations(p, self._area, shape, told.u, told.u_free, sums, fixed, acts)
+        if (pressure := self._arrays.pressure) is not None:
+            set_grains(p, shape, self._area, self._yields * dt, sums, fixed, free_z, through, pressure.grains)
         state = advance_row(
             row, state, dt, solid=self._at_rest(), arrays=self._arrays,
             grains=GrainAction(told.phi[row.inner], force, slope, np.zeros_like(force), phi_w),
@@ -357,6 +370,11 @@ class GrainsInRow:
         if self.eddies is not None:
             turbulence = turbulence_at_stations(p, shape, told.phi, np.array(state.edges))
         self.sampled, table = np.empty((len(self._z), N_SAMPLED)), table_of(shape, told, turbulence)
+        if (own := self._arrays.pressure) is not None and state.pressure is not None:
+            own.p[:], c_m = state.pressure, float(self.scene.water.c_m)
+            find_rises(p, shape, np.array(state.wet), own)
+            solid = np.zeros_like(told.phi) if self.solid is None else self.row.with_ends(self.solid.phi)
+            press_grains(p, shape, c_m, solid, told, own.push, own.within, own.top, table)
 
         def tell_some(begin: int, end: int) -> None:
             some, these = slice(begin, end), self.eddies

@@ -19,6 +19,7 @@ class RowShape(NamedTuple):
     bottom: Floats  # height of the bottom of each segment [m], shape (n_segment,)
     steep: Floats  # 1 + tan**2 of the angle between bottom and x axis at each station [-]
     inertia: Floats  # the same where the pressure is hydrostatic; 1 where one of its own turns the flow
+    own: bool  # whether it has a pressure of its own
     inner: tuple[int, int]  # first segment that is not beyond an end, and last one plus one
     dx: float  # length of a segment [m]
     g_z: float  # gravity normal to the x axis [m/s2]

@@ -17,6 +17,7 @@ from ryusa.water.exchange import Ints
 from ryusa.water.limiter import limited
 from ryusa.water.row_layout import RowMatrix, RowShape, RowWater
 from ryusa.water.row_multigrid import Multigrid
+from ryusa.water.row_pressure_grains import PressedGrains, divide_grains
 from ryusa.water.row_station import StationArrays
 
 
@@ -33,13 +34,13 @@ class PressureArrays(NamedTuple):
     part: Floats  # water of the control volume of a face [m]
     gap: Floats  # distance over which P changes at a face [m]
     pull: Floats  # speed that a face gains by a difference of P [s/m]
-    drag: Floats  # of a porous solid on a face, over its water [1/s]
+    drag: Floats  # of a porous solid and of fixed grains on a face, over its water [1/s]
     nu: Floats  # viscosity of the cells, that of turbulence too [m2/s], shape (n_all, n)
     push: Floats  # force of P on a cell of a station, over density and length [m2/s2], (n_station, n)
     force: Floats  # the same as `Sources` takes it [N/m3]
     star: Floats  # speed at the stations before the projection [m/s]
     gain: Floats  # speed that a station gains by a difference of P [s/m]
-    damp: Floats  # drag of a porous solid at a station, over its water [1/s]
+    damp: Floats  # drag of both at a station, over its water [1/s]
     feel: Floats  # difference that a station feels of the rise of P in inclined cells [m2/s2]
     change: Floats  # of the speed there [m/s]
     a_x: Floats  # couplings of the system [1/s], shape (n_station, n)
@@ -58,6 +59,7 @@ class PressureArrays(NamedTuple):
     passed: Floats  # the same that flows along x carries
     brought: Floats  # W that a cell of a station carries to the faces below and above it, (2, n_station, n)
     grids: Multigrid
+    grains: PressedGrains
 
     @staticmethod
     def of(shape: RowShape, n: int) -> "PressureArrays":
@@ -71,6 +73,7 @@ class PressureArrays(NamedTuple):
             np.zeros(faces), np.zeros(cells), tilt, bool((tilt != 0.0).any()),
             np.zeros(segments, np.int64), np.zeros(segments, np.int64), *map(np.zeros, shapes),
             grids=Multigrid.of(shape.inner[1] - shape.inner[0], n),
+            grains=PressedGrains.none(stations, segments, n),
         )  # fmt: skip
 
 
@@ -150,6 +153,8 @@ def divide_among_faces(p: ColumnParameters, shape: RowShape, water: RowWater, a:
             a.gap[i, f] = p.dz if f < top else 0.5 * p.dz + water.wet[i, top]
         if top > shape.first[i]:
             a.part[i, top] += 0.5 * water.content[i, top]
+        if a.grains.yields[0] > 0.0:
+            divide_grains(shape, water.wet[i], top, i, a.grains)
 
 
 @kernel
@@ -183,37 +188,61 @@ def weigh_with_thickness(p: ColumnParameters, shape: RowShape, wet: Floats, a: P
 
 
 @kernel
+def rise_along(shape: RowShape, wet: Floats, j: int, k: int, a: PressureArrays) -> float:
+    """Rise of P along x in a cell of a station, times its wet thickness [m2/s2].
+
+    Of each segment beside, the wet thickness times P: what neighbours give to each other cancels, and what is
+    left acts on steps and on the bottom.
+    """
+    left, right = shape.left[j], shape.right[j]
+    rise = (a.thick[right, k] - a.thick[left, k]) / shape.dx
+    if a.tilt[j] != 0.0:
+        within = wet[left, k] * a.within[left, k] + wet[right, k] * a.within[right, k]
+        rise -= 0.5 * a.tilt[j] * within
+    return float(rise)
+
+
+@kernel
 def push_stations(
     p: ColumnParameters, shape: RowShape, given: Floats, water: RowWater, a: PressureArrays
 ) -> None:
     """Force of P on the stations, beside the forces `given` by grains [N/m3], both (n_station, n).
 
-    Notes
-    -----
-    Of each segment beside, the wet thickness times P: what neighbours give to each other cancels, and what is
-    left acts on steps and on the bottom. Water takes the share of its content, grains at rest the other.
+    Water takes the share of its content, grains the other.
     """
     weigh_with_thickness(p, shape, water.wet, a)
     if a.sloped:
         slopes_of(shape, a.p, a)
     for j in range(len(shape.left)):
         left, right = shape.left[j], shape.right[j]
-        a.push[j, :] = 0.0
-        for k in range(p.n):
-            a.force[j, k] = shape.steep[j] * given[j, k]
+        a.push[j, :], a.force[j, :] = 0.0, given[j]
         if shape.kind[j] != OPEN:
             continue
         for k in range(max(shape.first[left], shape.first[right]), p.n):
             h = 0.5 * (water.wet[left, k] + water.wet[right, k])
             if h <= 0.0:
                 break
-            rise = (a.thick[right, k] - a.thick[left, k]) / shape.dx
-            if a.tilt[j] != 0.0:
-                within = water.wet[left, k] * a.within[left, k] + water.wet[right, k] * a.within[right, k]
-                rise -= 0.5 * a.tilt[j] * within
             share = 0.5 * (water.content[left, k] + water.content[right, k]) / h
-            a.push[j, k] = -rise * share
-            a.force[j, k] += p.rho_w * rise * share / p.dz
+            a.push[j, k] = -rise_along(shape, water.wet, j, k, a) * share
+            a.force[j, k] -= p.rho_w * a.push[j, k] / p.dz
+
+
+@kernel
+def find_rises(p: ColumnParameters, shape: RowShape, wet: Floats, a: PressureArrays) -> None:
+    """Rise of P [m/s2]: along x at the stations into `push`, upwards in the cells into `within`."""
+    find_tops(shape, wet, a.top)
+    for i in range(shape.inner[0], shape.inner[1]):
+        for f in range(shape.first[i] + 1, a.top[i] + 1):
+            a.gap[i, f] = p.dz if f < a.top[i] else 0.5 * p.dz + wet[i, f]
+    weigh_with_thickness(p, shape, wet, a)
+    slopes_of(shape, a.p, a)
+    for j in range(len(shape.left)):
+        left, right = shape.left[j], shape.right[j]
+        a.push[j, :] = 0.0
+        for k in range(max(shape.first[left], shape.first[right]), p.n):
+            h = 0.5 * (wet[left, k] + wet[right, k])
+            if h > 0.0 and shape.kind[j] == OPEN:
+                a.push[j, k] = rise_along(shape, wet, j, k, a) / h
 
 
 @kernel
@@ -248,14 +277,16 @@ def gather_w(
 ) -> None:  # fmt: skip
     """Momentum of the faces of a segment before stresses and pressure, over density [m2/s], into `right`."""
     first, top, n, per = shape.first[i], a.top[i], p.n, dt / shape.dx
-    west, east = shape.west[i], shape.east[i]
+    west, east, given = shape.west[i], shape.east[i], a.grains.force[i]
     for f in range(first + 1, n):
         right[f] = 0.5 * (work.old[i, f - 1] + work.old[i, f]) * a.w[i, f]
         right[f] += per * (a.passed[west, f] + a.rub[west, f] - a.passed[east, f] - a.rub[east, f])
+        right[f] -= dt * p.dz / p.rho_w * 0.5 * (given[f - 1] + given[f])
     for f in range(top + 1, n):  # the uppermost face has all above it
         right[top] += right[f]
     right[top] += 0.5 * work.old[i, n - 1] * a.w[i, n]
     right[top] += per * (a.passed[west, n] + a.rub[west, n] - a.passed[east, n] - a.rub[east, n])
+    right[top] -= dt * p.dz / p.rho_w * 0.5 * given[n - 1]
 
 
 @kernel
@@ -287,7 +318,8 @@ def predict_w(
             above = 0.5 * (work.q[i, f] + work.q[i, f + 1]) if f < top else 0.0
             drag = matrix.linear[i, k] + matrix.linear[i, f]
             drag += (matrix.quadratic[i, k] + matrix.quadratic[i, f]) * abs(a.w[i, f])
-            a.drag[i, f] = 0.5 * a.gap[i, f] / part * drag
+            fixed = a.grains.drag[i, k] + a.grains.drag[i, f] * (1.0 if f < top else 2.0)
+            a.drag[i, f] = 0.5 * (a.gap[i, f] * drag + p.dz / p.rho_w * fixed) / part
             under = water.content[i, k] * a.nu[i, k] * per_dz2
             over = water.content[i, f] * a.nu[i, f] * per_dz2 if f < top else 0.0
             low[k] = -max(below, 0.0) - under

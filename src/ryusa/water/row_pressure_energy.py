@@ -64,7 +64,7 @@ def book_faces(
     follows the bottom and has no energy of its own: what it gives or takes is a FALL.
     """
     # One function: the pieces of a face, each with its own speed, are those of `gather_w`
-    late, upwind, fall, shear, porous, surface, ends = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    late, upwind, fall, shear, porous, surface, ends, grains = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     per, last = dt / shape.dx, shape.inner[1] - 1
     for i in range(shape.inner[0], shape.inner[1]):
         first, top, w = shape.first[i], a.top[i], a.next_w[i]
@@ -104,6 +104,8 @@ def book_faces(
                 fall -= dt * flow * up**2
                 shear += 2.0 * dt * rubs * (w[f] - w[first]) * w[f]
             porous += 2.0 * dt * a.part[i, f] * a.drag[i, f] * w[f] ** 2
+            given = a.grains.force[i, f - 1] + a.grains.force[i, f] * (1.0 if f < top else 2.0)
+            grains -= dt * p.dz / p.rho_w * given * w[f]
             rise = (a.p[i, f] if f < top else 0.0) - a.p[i, f - 1]
             surface += 2.0 * dt * rise * a.part[i, f] / a.gap[i, f] * w[f]
     half = 0.5 * p.rho_w * shape.dx
@@ -112,6 +114,7 @@ def book_faces(
     books[FALL] += half * (fall + ends)
     books[SHEAR] += half * shear
     books[POROUS] += half * porous
+    books[GRAINS] += half * grains
     books[SURFACE] += half * surface
 
 

@@ -15,6 +15,7 @@ from ryusa.water.exchange import Ints
 from ryusa.water.row_layout import RowMatrix, RowShape, RowWater
 from ryusa.water.row_multigrid import precondition, set_up
 from ryusa.water.row_pressure import PressureArrays, slopes_of
+from ryusa.water.row_pressure_grains import mobility_along
 
 FINE = 1.0e-6  # largest divergence that may be left, times the height of a cell, over sqrt(g dz)
 ROUND_OFF = 1.0e-13  # the same over that of the predicted speeds: less cannot be had
@@ -23,15 +24,18 @@ MOST_TURNS = 40  # of conjugate gradients; more are a fault
 
 @kernel
 def couple(
-    p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, water: RowWater, a: PressureArrays
-) -> None:
+    p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, slope: Floats, water: RowWater,
+    a: PressureArrays,
+) -> None:  # fmt: skip
     """Couplings of the full cells by the predicted speeds, which are those of `water`.
 
     Notes
     -----
     Water leaves a cell with the content of the segment upstream, as `fluxes_along` has it. The drag of a
-    porous solid acts on the correction too, so that Darcy's flow is found at once.
+    porous solid, and that of fixed grains (`slope`, as in `RowGrains`), acts on the correction too, so that
+    Darcy's flow is found at once. Free grains will follow the change in the next interval.
     """
+    follow, yields = a.grains.yields[0] > 0.0, a.grains.yields[0]
     for j in range(len(shape.left)):
         left, right = shape.left[j], shape.right[j]
         a.a_x[j, :], a.gain[j, :], a.damp[j, :] = 0.0, 0.0, 0.0
@@ -43,24 +47,28 @@ def couple(
             content = 0.5 * (water.content[left, k] + water.content[right, k])
             drag = b * (matrix.linear[left, k] + 2.0 * matrix.quadratic[left, k] * abs(u))
             drag += c * (matrix.linear[right, k] + 2.0 * matrix.quadratic[right, k] * abs(u))
-            a.damp[j, k] = 0.5 * drag / content
+            a.damp[j, k] = (0.5 * drag + slope[j, k] * p.dz / p.rho_w) / content
             a.gain[j, k] = dt / (1.0 + a.damp[j, k] * dt) * p.dz / (0.5 * (b + c)) / shape.dx
             a.a_x[j, k] = water.content[left if u > 0.0 else right, k] * a.gain[j, k] / shape.dx
+            if follow:
+                a.a_x[j, k] += mobility_along(shape, water.wet, j, k, a.grains) * p.dz / shape.dx
     for i in range(shape.inner[0], shape.inner[1]):
         west, east = shape.west[i], shape.east[i]
         a.a_z[i, :], a.diagonal[i, :] = 0.0, 0.0
         for f in range(shape.first[i] + 1, a.top[i] + 1):
             a.a_z[i, f] = a.part[i, f] / a.gap[i, f] * a.pull[i, f]
+            if follow:
+                a.a_z[i, f] += yields * a.grains.part[i, f] / a.gap[i, f] ** 2
         for k in range(shape.first[i], a.top[i]):
             a.diagonal[i, k] = a.a_x[west, k] + a.a_x[east, k] + a.a_z[i, k] + a.a_z[i, k + 1]
 
 
 @kernel
-def pass_faces(shape: RowShape, content: Floats, u: Floats, sign: Floats, a: PressureArrays) -> None:
-    """What water that flows along x takes through the inclined faces of cells, into `slope` [m/s].
+def pass_faces(shape: RowShape, flow: Floats, a: PressureArrays) -> None:
+    """What a flow along x takes through the inclined faces of cells, into `slope` [m/s].
 
-    The transpose of the mean of `within` at both sides of a station. `sign` is that of the predicted speeds,
-    which chooses the content.
+    `flow` is that of each station [m2/s], shape (n_station, n). The transpose of the mean of `within` at both
+    sides of a station.
     """
     taken = a.within
     taken[:], a.slope[:] = 0.0, 0.0
@@ -68,10 +76,9 @@ def pass_faces(shape: RowShape, content: Floats, u: Floats, sign: Floats, a: Pre
         if a.tilt[j] == 0.0 or shape.kind[j] == WALL:
             continue
         left, right, half = shape.left[j], shape.right[j], 0.5 * a.tilt[j]
-        for k in range(max(shape.first[left], shape.first[right]), u.shape[1]):
-            flow = half * content[left if sign[j, k] > 0.0 else right, k] * u[j, k]
-            taken[left, k] += flow
-            taken[right, k] += flow
+        for k in range(max(shape.first[left], shape.first[right]), flow.shape[1]):
+            taken[left, k] += half * flow[j, k]
+            taken[right, k] += half * flow[j, k]
     for i in range(shape.inner[0], shape.inner[1]):
         top = a.top[i]
         for f in range(shape.first[i] + 1, top + 1):
@@ -87,37 +94,40 @@ def divergence(
 
     `flux` is that through an inlet [m2/s]; through others the speeds of `water` give it.
     """
-    through, most = a.slope, 0.0
+    through, flows, most = a.slope, a.change, 0.0
     through[:] = 0.0
+    for j in range(len(shape.left)):
+        left, right = shape.left[j], shape.right[j]
+        flows[j, :] = 0.0
+        if shape.kind[j] != WALL:
+            for k in range(max(shape.first[left], shape.first[right]), p.n):
+                u = water.u[j, k]
+                flows[j, k] = u * water.content[left if u > 0.0 else right, k]
     if a.sloped:
-        pass_faces(shape, water.content, water.u, water.u, a)
+        pass_faces(shape, flows, a)
     for i in range(shape.inner[0], shape.inner[1]):
         first, top = shape.first[i], a.top[i]
         out[i, :] = 0.0
         for f in range(first + 1, top + 1):
-            through[i, f] += a.part[i, f] / a.gap[i, f] * a.next_w[i, f]
+            through[i, f] += a.part[i, f] / a.gap[i, f] * a.next_w[i, f] + a.grains.up[i, f]
         for k in range(first, top):
             total = through[i, k + 1] - (through[i, k] if k > first else 0.0)
             for j, sign in ((shape.west[i], -1.0), (shape.east[i], 1.0)):
-                left, right = shape.left[j], shape.right[j]
                 if shape.kind[j] == INFLOW:
                     total += sign * flux[j, k] / shape.dx
-                elif shape.kind[j] == OPEN and k >= max(shape.first[left], shape.first[right]):
-                    u = water.u[j, k]
-                    total += sign * u * water.content[left if u > 0.0 else right, k] / shape.dx
+                elif shape.kind[j] == OPEN:
+                    total += sign * (flows[j, k] + a.grains.along[j, k]) / shape.dx
             out[i, k] = total
             most = max(most, abs(total))
     return most
 
 
 @kernel
-def multiply(
-    p: ColumnParameters, shape: RowShape, x: Floats, water: RowWater, a: PressureArrays, y: Floats
-) -> float:
+def multiply(p: ColumnParameters, shape: RowShape, x: Floats, a: PressureArrays, y: Floats) -> float:
     """Multiply x by the system, into y, in the full cells; the product of both returned."""
     total = 0.0
     if a.sloped:
-        add_inclined(p, shape, x, water, a, y)
+        add_inclined(p, shape, x, a, y)
     for i in range(shape.inner[0], shape.inner[1]):
         west, east = shape.west[i], shape.east[i]
         before, after, own = shape.left[west], shape.right[east], 0.0
@@ -134,9 +144,7 @@ def multiply(
 
 
 @kernel
-def add_inclined(
-    p: ColumnParameters, shape: RowShape, x: Floats, water: RowWater, a: PressureArrays, y: Floats
-) -> None:
+def add_inclined(p: ColumnParameters, shape: RowShape, x: Floats, a: PressureArrays, y: Floats) -> None:
     """What inclined faces add to the product: a station feels the rise of x, and drives flow through them."""
     slopes_of(shape, x, a)
     change, a.feel[:] = a.change, 0.0
@@ -148,8 +156,8 @@ def add_inclined(
         for k in range(p.n):
             if a.gain[j, k] != 0.0:
                 a.feel[j, k] = 0.5 * shape.dx * a.tilt[j] * (a.within[left, k] + a.within[right, k])
-                change[j, k] = -a.gain[j, k] * (x[right, k] - x[left, k] - a.feel[j, k])
-    pass_faces(shape, water.content, change, water.u, a)
+                change[j, k] = -a.a_x[j, k] * shape.dx * (x[right, k] - x[left, k] - a.feel[j, k])
+    pass_faces(shape, change, a)
     for i in range(shape.inner[0], shape.inner[1]):
         west, east = shape.west[i], shape.east[i]
         for k in range(shape.first[i], a.top[i]):
@@ -158,7 +166,7 @@ def add_inclined(
 
 
 @kernel
-def solve(p: ColumnParameters, shape: RowShape, most: float, water: RowWater, a: PressureArrays) -> int:
+def solve(p: ColumnParameters, shape: RowShape, most: float, a: PressureArrays) -> int:
     """The change of P that removes the divergence in `right`, into `found`; turns, or -1 without success.
 
     `most` is the largest divergence [m/s].
@@ -180,7 +188,7 @@ def solve(p: ColumnParameters, shape: RowShape, most: float, water: RowWater, a:
         for i in range(low, high):
             for k in range(shape.first[i], a.top[i]):
                 a.d[i, k] = a.z[i, k] + part * a.d[i, k]
-        way = now / multiply(p, shape, a.d, water, a, a.y)
+        way = now / multiply(p, shape, a.d, a, a.y)
         left = 0.0
         for i in range(low, high):
             for k in range(shape.first[i], a.top[i]):
@@ -208,8 +216,9 @@ def product(shape: RowShape, top: Ints, x: Floats, y: Floats) -> float:
 
 @kernel
 def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureArrays) -> None:
-    """Take the change of P out of the speeds; `star` keeps those of the stations before."""
+    """Take the change of P out of all speeds; `star` keeps those of the stations before."""
     a.star[:] = water.u
+    follow, yields = a.grains.yields[0] > 0.0, a.grains.yields[0]
     if a.sloped:
         slopes_of(shape, a.found, a)
     for j in range(len(shape.left)):
@@ -223,6 +232,8 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
                 if a.tilt[j] != 0.0:
                     rise -= 0.5 * shape.dx * a.tilt[j] * (a.within[left, k] + a.within[right, k])
                 water.u[j, k] -= a.gain[j, k] * rise
+                if follow:
+                    a.grains.along[j, k] -= mobility_along(shape, water.wet, j, k, a.grains) * p.dz * rise
             if water.wet[left, k] + water.wet[right, k] > 0.0 and k >= max(
                 shape.first[left], shape.first[right]
             ):
@@ -234,7 +245,10 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
         top = a.top[i]
         for f in range(shape.first[i] + 1, top + 1):
             above = a.found[i, f] if f < top else 0.0
-            a.next_w[i, f] -= a.pull[i, f] * (above - a.found[i, f - 1])
+            rise = above - a.found[i, f - 1]
+            a.next_w[i, f] -= a.pull[i, f] * rise
+            if follow:
+                a.grains.up[i, f] -= yields * a.grains.part[i, f] / a.gap[i, f] * rise
         for f in range(max(top, shape.first[i]) + 1, p.n + 1):
             a.next_w[i, f] = a.next_w[i, top] if top > shape.first[i] else a.next_w[i, f]
         for k in range(shape.first[i], top):
@@ -243,13 +257,13 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
 
 @kernel
 def project(
-    p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, water: RowWater, flux: Floats,
-    a: PressureArrays,
+    p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, slope: Floats, water: RowWater,
+    flux: Floats, a: PressureArrays,
 ) -> int:  # fmt: skip
     """Change P, U in `water` and W so that no full cell gains water; turns, or -1 without success."""
-    couple(p, shape, dt, matrix, water, a)
+    couple(p, shape, dt, matrix, slope, water, a)
     most = divergence(p, shape, flux, water, a, a.right)
-    turns = solve(p, shape, most, water, a)
+    turns = solve(p, shape, most, a)
     correct(p, shape, water, a)
     return turns
 

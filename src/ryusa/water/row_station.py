@@ -100,7 +100,7 @@ def gather(
         given[0, at], given[2, at] = u, u
         given[1, at] = 0.5 * (work.old[left, k] + work.old[right, k])
         given[3, at] = mean_of(a, b, phi[left, k], phi[right, k])
-        given[4, at], given[5, at], given[6, at] = force[k], part * slope[k], carried[k]
+        given[4, at], given[5, at], given[6, at] = force[k], slope[k], carried[k]
         given[7, at] = phi_w[k]
         if h > 0.0:
             m = at

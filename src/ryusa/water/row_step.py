@@ -314,7 +314,7 @@ def advance_row(
                 for k in range(p.n):
                     water.u[j, k] = work.u[j, k]
         if pressure is not None:
-            turns = project(p, shape, dt, matrix, water, work.flux, pressure)
+            turns = project(p, shape, dt, matrix, grains.slope, water, work.flux, pressure)
             if turns < 0:
                 scalars[FAULT_AT] = worst_segment(shape, pressure)
                 return NOT_PROJECTED

@@ -33,7 +33,6 @@ from ryusa.casefile.row.values import (
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
-from ryusa.laws.families import Pressure
 from ryusa.model.row import STEEPEST
 
 MOST_SEGMENTS = 100_000
@@ -50,11 +49,6 @@ def check_row(case: Case) -> Iterator[CaseError]:
         return
     if water.profile != "column":
         return  # reported as a key without effect
-    if keys.pressure != Pressure.HYDROSTATIC.word and not water_alone(case):
-        yield CaseError(
-            "water.row.pressure", keys.pressure,
-            f'is for water alone so far; among grains take "{Pressure.HYDROSTATIC.word}"',
-        )  # fmt: skip
     if stream(case):
         found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(case.column)]
     elif water_alone(case):

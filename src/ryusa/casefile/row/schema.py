@@ -129,7 +129,7 @@ class RowSection(Section):
     Instead of water.depth, the depth over the bottom."""
     pressure: Annotated[str, WordOf(families.Pressure)] = "hydrostatic"
     """Pressure of the water: the weight of what lies above, or with what turns the water up and down, which
-    short waves, flow over sills, jumps and pores need. For water alone; a step takes two to three times as
+    short waves, flow over sills, jumps and pores need. A step of the water takes two to three times as
     long."""
     width: PositiveLength | None = None
     """Width of the stream, for grains and for a discharge in m3/s; `column.side_walls` when not given."""
