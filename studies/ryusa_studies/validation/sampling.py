@@ -122,6 +122,7 @@ CLOSED: Mapping[str, str] = {
     "water_alone": "a column of water, solved for its steady state",
     "river": "a row of columns of water; with grains, the seeds that were registered",
     "river_pressure": "a row of columns of water alone",
+    "river_pressure_grains": "a row of columns, and a lattice of grains in it",
     "river_debris": "debris flows in a row of columns, with the seeds that were registered",
     "terminal_velocity": "one grain",
     "suspension": "a lattice of grains that do not touch",

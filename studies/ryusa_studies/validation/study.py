@@ -17,6 +17,7 @@ NAMES = (
     "water_alone",
     "river",
     "river_pressure",
+    "river_pressure_grains",
     "river_debris",
     "terminal_velocity",
     "suspension",
