@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import Buoyancy, Drag, Hindrance, Pressure, Profile
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
@@ -57,7 +57,7 @@ def sinking(density: float) -> dict[str, Floats]:
     made = replace(made, world_low=(-math.inf,) * 3)
     column = replace(water(PITCH, 40, 34 * PITCH, nu=NU), area=length * D)
     row = ColumnRow(column, length / 2, np.zeros(2), G, pressure=Pressure.FULL)
-    engine = CpuEngine()
+    engine = registry.create()
     engine.load(made, first)
     now = GrainsInRow.begin(made, row, at).at_rest(np.full(2, 34 * PITCH))
     grains, steps = GrainsInRow.begin(made, row, at, now), 1
