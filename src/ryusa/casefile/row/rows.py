@@ -12,6 +12,7 @@ from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.ends import discharge_of, least_discharge, peak_discharge, width_of
 from ryusa.casefile.row.hydrograph import hydrograph_rows
+from ryusa.casefile.row.pressure_rows import pressure_rows
 from ryusa.casefile.row.reach_rows import reach_rows
 from ryusa.casefile.row.reach_source import reach_of
 from ryusa.casefile.row.schema import RowDamSection, RowSection
@@ -55,6 +56,7 @@ def row_rows(case: Case, derived: Derived) -> list[ExplainRow]:
         return _segments(case, "periodic")
     plan = row_plan(case)
     about = [*_grid(case, keys, plan), *_flow(case, keys), *_dams(case, keys, plan)]
+    about += pressure_rows(case, keys, plan)
     return [*about, *(_step(case, derived, plan) if alone else [*_bed(case), *_walls(case)])]
 
 

@@ -1,0 +1,48 @@
+"""What `ryusa check` says of the pressure of a row."""
+
+import pytest
+
+from ryusa.casefile import explain, read
+from ryusa.cases import case_path
+
+LACKS = "hydrostatic, so without"
+FINE = "segments in the head over a crest"
+
+
+def said(name: str, row: str, **keys: str) -> tuple[str, str]:
+    """Value and origin of a row of `ryusa check`, empty where there is none; of a packaged case."""
+    given = {key.replace("__", "."): one for key, one in keys.items()}
+    rows = [one for one in explain(read(case_path(f"{name}.toml"), given)) if one.name == row]
+    return (str(rows[0].value), rows[0].origin) if rows else ("", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "what", "why"),
+    [
+        ("weir", "bent flow", "over 'weir' on a crest 3 heads long; within about three depths of the free"),
+        ("river", "bent flow, antidunes", "on a loose bed at a Froude number up to 1.9"),
+        ("dam_break", "front", "from a step of 10 cm in the surface"),
+        ("even_bed", "", ""),
+    ],
+)
+def test_check_says_what_a_hydrostatic_pressure_lacks(name, what, why):
+    value, origin = said(name, LACKS)
+    assert value == what and why in origin
+    assert said(name, LACKS, water__row__pressure="full") == ("", "")
+
+
+def test_pores_that_fill_slowly_are_said_with_their_time():
+    """0.05 H L/((1 - phi)^2 (sigma/rho - 1) g phi), L = 150 nu phi^2/((1 - phi) d^2) by Ergun [s]."""
+    fine = {"grains__diameter": "0.2 mm", "water__column__cell": "0.2 mm", "water__row__width": "0.8 mm"}
+    value, origin = said("dam_break", LACKS, **fine)
+    phi, d, high, g = 0.53, 2e-4, 0.015, 9.80665
+    drag = 150.0 * 1e-6 * phi / ((1.0 - phi) * d**2) * phi
+    fills = 0.05 * high * drag / ((1.0 - phi) ** 2 * 0.58 * g * phi)
+    assert value == "front, drainage sideways"
+    assert f"take {fills:.2g} s to fill when it dilates by 5 %" in origin
+
+
+def test_segments_that_do_not_resolve_a_crest_are_said():
+    assert "take water.row.segment = 1.7 cm" in said("weir", FINE, water__row__pressure="full")[1]
+    fine = {"water__row__pressure": "full", "water__row__segment": "1.25 cm"}
+    assert said("weir", FINE, **fine) == ("", "")
