@@ -59,7 +59,7 @@ def broken(seed: int) -> dict[str, Floats]:
     case = read(path, {"seed": str(seed)})
     with TemporaryDirectory() as folder:
         loose = read(path, {**SETTLING, "seed": str(seed)})
-        settled = _whole(run(loose, f"{folder}/settled", progress=False))
+        settled = whole(run(loose, f"{folder}/settled", progress=False))
         scene = build(case).scene
         x = np.array(settled.frames.x[-1])
         x[:, 1] %= scene.period[1]
@@ -68,10 +68,11 @@ def broken(seed: int) -> dict[str, Floats]:
             scene, State.at_rest(x), f"{folder}/broken", frames=case.record.frames,
             stop=Stop(time=case.stop.time), progress=False,
         )  # fmt: skip
-        return profiles(_whole(done))
+        return profiles(whole(done))
 
 
-def _whole(run: Results) -> Results:
+def whole(run: Results) -> Results:
+    """The run, if it came to its end; raises KeyboardInterrupt."""
     if not run.complete:
         raise KeyboardInterrupt
     return run

@@ -18,9 +18,22 @@ from ryusa.model import Water
 from ryusa.model.arrays import Floats
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.model.scene import EventRule
-from ryusa.study import Band, Finding, Found, Plan, Source, Task, at_most, calculation, comparison, misfit
+from ryusa.study import (
+    Band,
+    Finding,
+    Found,
+    Level,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
+from ryusa_studies.validation import river_immersed as immersed
 from ryusa_studies.validation.river_pressure import BOTH, WALLS, G, water
 
 TITLE = "Grains under the pressure along a row"
@@ -148,15 +161,15 @@ def _rising() -> Task:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Half a minute."""
-    del plan
-    return [*_sinking(), *_seeping(), _rising()]
+    """Half a minute; at the full level half an hour more."""
+    every = [*_sinking(), *_seeping(), _rising()]
+    return [*every, *immersed.tasks()] if plan.level is Level.FULL else every
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Each beside a closed form."""
-    del plan
-    return [_borne(found), _seeps(found), _rises(found)]
+    """Each beside a closed form; columns under water by what experiments show."""
+    every = [_borne(found), _seeps(found), _rises(found)]
+    return [*every, *immersed.judge(found)] if plan.level is Level.FULL else every
 
 
 def _borne(found: Found) -> Finding:
