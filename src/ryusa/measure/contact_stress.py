@@ -227,9 +227,8 @@ def _plan(run: Run, first: int, last: int, scene: Scene) -> float:
             raise ResultsError(
                 "the scene is open along x, and its grains lie on a line: no area to divide by"
             ) from None
-        found.append(
-            float(hull.volume + hull.area * r + math.pi * r * r)
-        )  # in a plane these are area and rim
+        # In a plane these are area and rim
+        found.append(float(hull.volume + hull.area * r + math.pi * r * r))
     return float(np.mean(found))
 
 

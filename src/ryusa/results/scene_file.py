@@ -18,10 +18,8 @@ from ryusa.model.walls import N_MOTION, N_RIGID, N_SERVO
 from ryusa.results.flow_file import FLOW_ARRAYS, ROW, flow_arrays, flow_from, flow_scalars, numbers_of
 from ryusa.results.hdf5 import opened, read_dataset
 
-_TRAFFIC, _MATERIALS = (
-    "traffic",
-    "materials",
-)  # left out where a scene has none: digests of earlier versions stay
+# Left out where a scene has none: digests of earlier versions stay.
+_TRAFFIC, _MATERIALS = "traffic", "materials"
 _BODIES = "bodies"
 _ARRIVALS = "arrivals"
 _OF_ARRIVALS = tuple(f.name for f in fields(Arrivals) if f.name != "feed")

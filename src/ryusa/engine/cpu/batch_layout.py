@@ -7,9 +7,8 @@ read them as constants. A loop reads all four of a group or none: else it would 
 """
 
 LANES = 32  # pairs in a batch, a power of two
-PITCH = (
-    LANES + 8
-)  # between rows: with a power of two all rows would fall into the same few places of the cache
+# Doubles between rows: with a power of two all rows would fall into the same few places of the cache.
+PITCH = LANES + 8
 
 # Groups of four:
 SEPARATION = 0  # from i to j, and both radii together [m]

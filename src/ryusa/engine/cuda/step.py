@@ -221,9 +221,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
             )
 
         # what the threads of a block have in their accounts, added in a fixed order
-        shared_sums = cuda.shared.array(
-            0, float64
-        )  # `LaunchShape.shared_doubles` of them: a row a column, then sums of parts
+        # `LaunchShape.shared_doubles` of them: a row a column, then sums of parts
+        shared_sums = cuda.shared.array(0, float64)
         sums, me, row = group * threads, cuda.threadIdx.x, cuda.blockIdx.x * T.N_COLUMN
         for lead in range(0, T.N_COLUMN, group):
             cuda.syncthreads()
