@@ -75,12 +75,10 @@ MASS_E, ETA_N_E, K_N_E, WAY_E, AFTER_E = (EVENT + k * PITCH for k in range(4, 9)
 MASS_S_E, K_S_E, ETA_S_E = (EVENT + k * PITCH for k in range(9, 12))
 SPRING_E, SHEAR_E, SLIP_E = EVENT + 12 * PITCH, EVENT + 15 * PITCH, EVENT + 18 * PITCH  # three rows each
 # in their place the answers
-PUSH_E, SPENT_E, SLID_E, WHEN_E = (
-    EVENT + 26 * PITCH,
-    EVENT + 29 * PITCH,
-    EVENT + 31 * PITCH,
-    EVENT + 32 * PITCH,
-)
+PUSH_E = EVENT + 26 * PITCH
+SPENT_E = EVENT + 29 * PITCH
+SLID_E = EVENT + 31 * PITCH
+WHEN_E = EVENT + 32 * PITCH
 LAW_E = EVENT + 33 * PITCH  # stiffnesses and friction, three rows, where materials differ
 SIDEWAYS = EVENT + 36 * PITCH  # a group of four: shift of i times its mass, and nothing [kg m]
 WHEN = EVENT + 40 * PITCH  # of a pair: time of touch or release after the step [s]

@@ -126,14 +126,12 @@ def make_block_forces(kind: ForcesKind) -> Any:
         reach_on = c[P.FILM_REACH] if film else 0.0
         # arrays are passed one by one: references to a tuple of them would be counted for every batch
         x, v, w, f, ids = grains.x, grains.v, grains.w, pairs.f, grains.ids
-        i_of, j_of, to, touching, eta, rows = (
-            candidates.i,
-            candidates.j,
-            candidates.target,
-            candidates.touching,
-            candidates.eta,
-            candidates.rows,
-        )
+        i_of = candidates.i
+        j_of = candidates.j
+        to = candidates.target
+        touching = candidates.touching
+        eta = candidates.eta
+        rows = candidates.rows
         mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
         met, slot, face_lanes, impulse = candidates.met, candidates.slot, work.face_lanes, accounts.walls[b]
         spring_r = given = pending = 0.0

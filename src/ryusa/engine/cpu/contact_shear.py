@@ -225,12 +225,10 @@ def make_contact_shear(kind: ForcesKind) -> Any:
             candidates.rows,
         )  # fmt: skip
         mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
-        met, slot, face_lanes, impulse = (
-            candidates.met,
-            candidates.slot,
-            work.face_lanes,
-            held.accounts.walls[b],
-        )
+        met = candidates.met
+        slot = candidates.slot
+        face_lanes = work.face_lanes
+        impulse = held.accounts.walls[b]
         rules = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
         given = pending = 0.0
         fill4(f, 8 * (n + b), 0.0)  # those of fixed grains and planes, not used

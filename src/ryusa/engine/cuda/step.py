@@ -51,11 +51,9 @@ Vector = tuple[float, float, float]
 B_ROLL, B_RELEASED_R, B_STEP = int(Term.ROLL), int(Term.RELEASED_R), int(Term.STEP)
 
 _kicks_of_pair = on_device(kicks_of_pair)
-_rolling_friction, _end_rolling, _close_fluid_interval = (
-    on_device(rolling_friction),
-    on_device(end_rolling),
-    on_device(close_fluid_interval),
-)
+_rolling_friction = on_device(rolling_friction)
+_end_rolling = on_device(end_rolling)
+_close_fluid_interval = on_device(close_fluid_interval)
 
 
 @device
