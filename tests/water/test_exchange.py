@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.water.cells import to_cells
 
 from ryusa.laws.slices import sphere_slice
 from ryusa.water import exchange
@@ -70,7 +71,7 @@ def test_the_momentum_given_by_grains_is_that_received_by_the_cells(packing, sha
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     amounts = rng.normal(size=(len(z), *columns))
-    got = exchange.to_cells(found, amounts, share)
+    got = to_cells(found, amounts, share)
     size = np.abs(amounts).sum(axis=0)
     assert np.all(np.abs(got.cells.sum(axis=0) + got.below + got.above - amounts.sum(axis=0)) < 1e-12 * size)
     if share == "submerged":
@@ -87,7 +88,7 @@ def test_gather_and_scatter_conserve_work(packing, share):
     found = exchange.slices(z, d, cells)
     force, speed = rng.normal(size=len(z)), rng.normal(size=cells.n)
     by_grains = force * exchange.to_grains(found, speed, share)
-    by_cells = exchange.to_cells(found, force, share).cells * speed
+    by_cells = to_cells(found, force, share).cells * speed
     assert by_grains.sum() == pytest.approx(by_cells.sum(), abs=1e-12 * np.abs(force).sum())
 
 
@@ -128,7 +129,7 @@ def test_bits_do_not_depend_on_where_grains_lie_in_memory(packing, seed):
     np.testing.assert_array_equal(
         exchange.weighted_concentration(other, v[ids]), exchange.weighted_concentration(one, v)
     )
-    first, second = exchange.to_cells(one, v), exchange.to_cells(other, v[ids])
+    first, second = to_cells(one, v), to_cells(other, v[ids])
     np.testing.assert_array_equal(second.cells, first.cells)
     np.testing.assert_array_equal(second.above, first.above)
     np.testing.assert_array_equal(second.below, first.below)
@@ -155,9 +156,9 @@ def test_a_grain_half_out_of_the_water_agrees_with_hand_calculation():
     assert found.above[0] == pytest.approx(math.pi / 12 * D**3)
     assert found.below[2] == pytest.approx(math.pi / 6 * D**3)
     weight = np.array([2.0, 4.0, 8.0])
-    got = exchange.to_cells(found, weight)
+    got = to_cells(found, weight)
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 1.0, 8.0, 1.0], atol=1e-15)
-    got = exchange.to_cells(found, weight, "submerged")
+    got = to_cells(found, weight, "submerged")
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 2.0, 8.0, 0.0], atol=1e-15)
     speed = np.array([1.0, 2.0, 3.0])
     np.testing.assert_allclose(exchange.to_grains(found, speed), [1.5, 2.0, 0.0])
@@ -186,7 +187,7 @@ def test_a_linear_flow_is_sampled_at_the_centre_in_the_limit_of_thin_cells(share
 def test_no_grains_are_accepted():
     none = exchange.slices(np.zeros(0), np.zeros(0), Cells(0.0, D, 4, AREA))
     assert not exchange.concentration(none).any()
-    assert exchange.to_cells(none, np.zeros((0, 2))).cells.shape == (4, 2)
+    assert to_cells(none, np.zeros((0, 2))).cells.shape == (4, 2)
     assert exchange.to_grains(none, np.ones(4)).shape == (0,)
 
 
@@ -204,7 +205,7 @@ def test_invalid_input_is_refused():
     with pytest.raises(ValueError, match="permutation"):
         exchange.slices(np.zeros(2), np.full(2, D), cells, ids=np.array([1, 1]))
     with pytest.raises(ValueError, match="one row per grain"):
-        exchange.to_cells(one, np.zeros(2))
+        exchange.weighted_concentration(one, np.zeros(2))
     with pytest.raises(ValueError, match="one row per cell"):
         exchange.to_grains(one, np.zeros(5))
     with pytest.raises(ValueError, match="the same cells"):
