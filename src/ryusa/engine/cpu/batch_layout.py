@@ -23,7 +23,7 @@ TORQUE_J = 32 * PITCH
 # Rows:
 WAS_TOUCHING = 36 * PITCH  # state of the pair: 1 where they touched in the last step
 EXCESS = 37 * PITCH  # overlap less the largest so far for its size [m]
-# Books [J], summed lane by lane until the block is done:
+# Energy account [J], summed lane by lane until the block is done:
 WORK = 38 * PITCH
 DASH_N, DASH_S, SLIDE, RELEASED_N, RELEASED_S, STEP = (WORK + k * PITCH for k in range(6))
 N_WORK = 6
@@ -86,7 +86,7 @@ WHEN = EVENT + 40 * PITCH  # of a pair: time of touch or release after the step 
 MU = 121 * PITCH  # friction of the pair [-]
 MINDLIN = 122 * PITCH  # tangential stiffness of elastic spheres over K sqrt(overlap) [-]
 # Only in scenes with walls:
-SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its books held before [J]
+SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its account held before [J]
 KEPT = 127 * PITCH
 PUSH = 133 * PITCH  # tangential impulse of an event on i, three rows [N s]
 BEND = 136 * PITCH  # rate at which the closing speed of free grains falls as they pass each other [m/s2]
