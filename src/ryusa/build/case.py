@@ -17,7 +17,7 @@ from ryusa.build.fill import fill
 from ryusa.build.flume import flume
 from ryusa.build.laws import laws_of
 from ryusa.build.materials import densities, materials_of, with_materials
-from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.overlaps import refuse_overlaps, refuse_overlaps_with_walls
 from ryusa.build.packing import packing
 from ryusa.build.passing_walls import refuse_passing_walls
 from ryusa.build.placement import Placement, Wall
@@ -33,7 +33,7 @@ from ryusa.build.wall_checks import (
     refuse_grains_beyond_exits,
     refuse_idle_servos,
 )
-from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, walls_of, with_room, with_walls
+from ryusa.build.walls import SolidWall, walls_of, with_room, with_walls
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import derive
