@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.model.arrays import Floats
-from ryusa.water.exchange import Share, Slices, add_to_cells
+from ryusa.water.exchange import Cells, Share, Slices, add_to_cells
 
 
 class CellTotals(NamedTuple):
@@ -26,3 +26,8 @@ def to_cells(grains: Slices, amounts: Floats, share: Share = "whole") -> CellTot
     )  # fmt: skip
     below, above = outside.T
     return CellTotals(sums[0], below[0], above[0]) if flat else CellTotals(sums.T, below, above)
+
+
+def faces_of(cells: Cells) -> Floats:
+    """Heights of the faces [m], shape (n + 1,)."""
+    return cells.z_low + np.arange(cells.n + 1, dtype=np.float64) * cells.dz

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.water.cells import to_cells
+from tests.water.cells import faces_of, to_cells
 
 from ryusa.laws.slices import sphere_slice
 from ryusa.water import exchange
@@ -47,7 +47,9 @@ def test_slices_are_those_of_the_law_and_add_up_to_the_grain(packing):
     z, d, cells, _ = packing
     found = exchange.slices(z, d, cells)
     r, whole = 0.5 * d, math.pi / 6 * d**3
-    expected = [[sphere_slice(r[i], *edges) for edges in pairwise(cells.faces - z[i])] for i in range(len(z))]
+    expected = [
+        [sphere_slice(r[i], *edges) for edges in pairwise(faces_of(cells) - z[i])] for i in range(len(z))
+    ]
     np.testing.assert_allclose(dense(found) / whole[:, None], expected / whole[:, None], rtol=0, atol=1e-12)
     assert (dense(found) >= 0.0).all()
     np.testing.assert_allclose(found.whole, whole, rtol=1e-14)
@@ -113,7 +115,7 @@ def test_a_uniform_flow_is_sampled_exactly(packing):
         exchange.to_grains(found, u, "submerged")[wet], u[:1].repeat(wet.sum(), 0), rtol=1e-12
     )
     assert not exchange.to_grains(found, u, "submerged")[~wet].any()
-    linear = 5.0 * (cells.faces - cells.z_low)
+    linear = 5.0 * (faces_of(cells) - cells.z_low)
     np.testing.assert_allclose(
         exchange.to_grains(found, np.diff(linear) / cells.dz), 5.0 * found.share, rtol=1e-10
     )
@@ -180,7 +182,7 @@ def test_a_linear_flow_is_sampled_at_the_centre_in_the_limit_of_thin_cells(share
     cells = Cells(z_low=0.0, dz=share * D, n=int(12 / share), area=AREA)
     z = np.random.default_rng(0).uniform(2 * D, 10 * D, 300)
     found = exchange.slices(z, np.full(300, D), cells)
-    off = exchange.to_grains(found, 3.0 * cells.middles) / 3.0 - z
+    off = exchange.to_grains(found, 3.0 * (faces_of(cells)[:-1] + 0.5 * cells.dz)) / 3.0 - z
     assert np.abs(off).max() < 0.06 * share**2 * D
 
 

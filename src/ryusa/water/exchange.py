@@ -54,16 +54,6 @@ class Cells:
             raise ValueError(f"{self}: at least one cell")
 
     @property
-    def faces(self) -> Floats:
-        """Heights of the faces [m], shape (n + 1,)."""
-        return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
-
-    @property
-    def middles(self) -> Floats:
-        """Heights of the middles [m], shape (n,)."""
-        return self.z_low + (np.arange(self.n, dtype=np.float64) + 0.5) * self.dz
-
-    @property
     def volume(self) -> float:
         """Of one cell [m3]."""
         return self.area * self.dz
