@@ -35,11 +35,8 @@ SETTINGS = {
     "10 exact": {"contact.timing": "exact", "time.steps_per_contact": "10"},
     "8 exact": {"contact.timing": "exact", "time.steps_per_contact": "8"},
 }
-LIMIT, FAR, SHARE = (
-    2.0,
-    4.0,
-    0.1,
-)  # standard errors, and the share of differences that may be beyond the first
+# Standard errors, and the share of differences that may be beyond the first.
+LIMIT, FAR, SHARE = 2.0, 4.0, 0.1
 
 
 @dataclass(frozen=True)

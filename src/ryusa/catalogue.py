@@ -81,7 +81,7 @@ class PictureEntry:
     measure : name of the measure that it draws, or "".
     drawing : of a picture of a measure, options of its own function, beside those of the measure.
     builders : kinds of `[build]` whose runs have it in their report.
-    fed, clumps, grainless : as of a measure; those of a picture of a measure are the measure's.
+    fed, clumps, grainless : as of a measure.
     """
 
     name: str
@@ -264,6 +264,25 @@ MEASURES = (
                  numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
 )  # fmt: skip
 
+
+def picture_of(
+    name: str, function: str, doc: str, *, without: tuple[str, ...] = (), drawing: tuple[str, ...] = ()
+) -> PictureEntry:
+    """The picture of the measure of that name, of the same runs and with its options.
+
+    Parameters
+    ----------
+    without : options of the measure that the picture does not take.
+    drawing : options of the function of the picture itself.
+    """
+    one = next(entry for entry in MEASURES if entry.name == name)
+    options = tuple(keyword for keyword in one.options if keyword not in without)
+    return PictureEntry(
+        name, function, doc, options, one.settled, name, drawing, one.builders, one.fed, one.clumps,
+        one.grainless,
+    )  # fmt: skip
+
+
 PICTURES = (
     PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
                  ("t", "colour", "lane"),
@@ -284,74 +303,53 @@ PICTURES = (
     PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
                  WINDOW, settled=True,
                  builders=("flume", "packing"), clumps=True),
-    PictureEntry("water", "ryusa.figures.water:water",
-                 "velocity, concentration and shear stress over height",
-                 WINDOW, settled=True, measure="water",
-                 builders=("flume",), clumps=True),
+    picture_of("water", "ryusa.figures.water:water",
+               "velocity, concentration and shear stress over height"),
     PictureEntry("transport", "ryusa.figures.runs:transport",
                  "transport rate over time, and beside bed-load formulae", WINDOW, settled=True,
                  builders=("flume",), clumps=True),
-    PictureEntry("dispersion", "ryusa.figures.dispersion:dispersion",
-                 "mean squared displacement over lag, and fitted diffusivities",
-                 WINDOW, settled=True, measure="dispersion"),
-    PictureEntry("contact_stress", "ryusa.figures.contact_stress:contact_stress",
-                 "stress over height beside the weight above, and mu over I",
-                 WINDOW, settled=True, measure="contact_stress"),
+    picture_of("dispersion", "ryusa.figures.dispersion:dispersion",
+               "mean squared displacement over lag, and fitted diffusivities", without=("layer",)),
+    picture_of("contact_stress", "ryusa.figures.contact_stress:contact_stress",
+               "stress over height beside the weight above, and mu over I", without=("layer",)),
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
                  ("t", "side", "lane"),
                  builders=("box", "empty"), fed=True, clumps=True),
     PictureEntry("shapes", "ryusa.figures.clump_shapes:clump_shapes",
                  "forms of the clumps, from two sides, beside the sphere of the same volume", fed=True,
                  clumps=True),
-    PictureEntry("cone", "ryusa.figures.cone:cone",
-                 "a round heap: height over distance from its axis, with its slope",
-                 ("t",), measure="cone", fed=True, clumps=True),
-    PictureEntry("dynamic_angle", "ryusa.figures.dynamic_angle:dynamic_angle",
-                 "angle of the surface in a drum over time",
-                 WINDOW, settled=True, measure="dynamic_angle", fed=True, clumps=True),
-    PictureEntry("shear", "ryusa.figures.plane_shear:plane_shear",
-                 "velocity and concentration between base and lid, and mu over I beside a published law",
-                 WINDOW, settled=True, measure="shear", clumps=True),
-    PictureEntry("direct_shear", "ryusa.figures.direct_shear:direct_shear",
-                 "friction and rise of the lid of a direct shear test over displacement",
-                 WINDOW, settled=True, measure="direct_shear", clumps=True),
-    PictureEntry("shear_zone", "ryusa.figures.shear_zone:shear_zone",
-                 "angular velocity of the surface over the radius, and the zone over height",
-                 WINDOW, settled=True, measure="shear_zone"),
-    PictureEntry("mill", "ryusa.figures.mill:mill",
-                 "torque of a drum, and the energy that it gives and its grains lose, over its turns",
-                 WINDOW, settled=True, measure="mill", clumps=True),
+    picture_of("cone", "ryusa.figures.cone:cone",
+               "a round heap: height over distance from its axis, with its slope"),
+    picture_of("dynamic_angle", "ryusa.figures.dynamic_angle:dynamic_angle",
+               "angle of the surface in a drum over time"),
+    picture_of("shear", "ryusa.figures.plane_shear:plane_shear",
+               "velocity and concentration between base and lid, and mu over I beside a published law"),
+    picture_of("direct_shear", "ryusa.figures.direct_shear:direct_shear",
+               "friction and rise of the lid of a direct shear test over displacement"),
+    picture_of("shear_zone", "ryusa.figures.shear_zone:shear_zone",
+               "angular velocity of the surface over the radius, and the zone over height"),
+    picture_of("mill", "ryusa.figures.mill:mill",
+               "torque of a drum, and the energy that it gives and its grains lose, over its turns"),
     PictureEntry("sizes", "ryusa.figures.runs:sizes",
                  "percent finer by mass over diameter, asked for and laid", clumps=True),
-    PictureEntry("walls", "ryusa.figures.walls:walls",
-                 "force on each wall over time, and the power of those that move",
-                 WINDOW, settled=True, measure="walls", drawing=("wall",), builders=EVERY_BUILDER,
-                 fed=True, clumps=True),
-    PictureEntry("loads", "ryusa.figures.loads:loads",
-                 "force of water and grains on dams and walls in a row of columns over time",
-                 (*WINDOW, "window"), settled=True, measure="loads", drawing=("wall",), fed=True, clumps=True,
-                 grainless=True),
-    PictureEntry("discharge", "ryusa.figures.discharge:discharge",
-                 "mass in by each feed and out by each exit, and mass there, over time",
-                 WINDOW, settled=True, measure="discharge", builders=EVERY_BUILDER, fed=True,
-                 clumps=True),
-    PictureEntry("passages", "ryusa.figures.passages:passages",
-                 "mass in by each feed and out by each exit, grain by grain, and what feeds owe",
-                 WINDOW, settled=True, measure="passages", builders=EVERY_BUILDER, fed=True,
-                 clumps=True),
-    PictureEntry("long_section", "ryusa.figures.long_section:long_section",
-                 "bed, water, energy line, Froude number and transport along a row of columns",
-                 ("t", "bed", *WINDOW), measure="long_section", fed=True, clumps=True, grainless=True),
-    PictureEntry("x_t", "ryusa.figures.long_section:x_t",
-                 "depth, change of the bed and transport of a row of columns over distance and time",
-                 ("bed", *WINDOW), settled=True, measure="x_t", drawing=("quantity",),
-                 fed=True, clumps=True, grainless=True),
-    PictureEntry("deposit", "ryusa.figures.deposit:deposit",
-                 "volume that came, went and is stored, and slope of the deposit, over time",
-                 ("dam", "reach", "bed", *WINDOW), settled=True, measure="deposit", fed=True, clumps=True),
-    PictureEntry("front", "ryusa.figures.front:front",
-                 "place of the first grain and of the front over time",
-                 WINDOW, settled=True, measure="front", builders=("stream",), fed=True, clumps=True),
+    picture_of("walls", "ryusa.figures.walls:walls",
+               "force on each wall over time, and the power of those that move", drawing=("wall",)),
+    picture_of("loads", "ryusa.figures.loads:loads",
+               "force of water and grains on dams and walls in a row of columns over time",
+               drawing=("wall",)),
+    picture_of("discharge", "ryusa.figures.discharge:discharge",
+               "mass in by each feed and out by each exit, and mass there, over time"),
+    picture_of("passages", "ryusa.figures.passages:passages",
+               "mass in by each feed and out by each exit, grain by grain, and what feeds owe"),
+    picture_of("long_section", "ryusa.figures.long_section:long_section",
+               "bed, water, energy line, Froude number and transport along a row of columns"),
+    picture_of("x_t", "ryusa.figures.long_section:x_t",
+               "depth, change of the bed and transport of a row of columns over distance and time",
+               drawing=("quantity",)),
+    picture_of("deposit", "ryusa.figures.deposit:deposit",
+               "volume that came, went and is stored, and slope of the deposit, over time"),
+    picture_of("front", "ryusa.figures.front:front",
+               "place of the first grain and of the front over time"),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

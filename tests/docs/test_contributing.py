@@ -55,9 +55,9 @@ def test_a_law_takes_two_files_and_its_units_a_measure_two_a_picture_two_an_engi
         "src/ryusa/catalogue.py",
         "src/ryusa/engine/registry.py",
     ]
-    lines = (FAMILIES, UNITS, ENTRY, REGISTRY)
+    lines = (FAMILIES, UNITS, ENTRY, PICTURE, REGISTRY)
     assert all(len(text.strip().splitlines()) == 1 for _, text in lines)
-    assert PICTURE[1].count("PictureEntry(") == 1
+    assert PICTURE[1].count("picture_of(") == 1
 
 
 @pytest.fixture(scope="module")

@@ -21,6 +21,21 @@ def run(made, n_steps, threads=1):
     return engine
 
 
+def momentum(scene, state):
+    """Momentum [kg m/s] and angular momentum [kg m2/s] of all grains."""
+    p = scene.m[:, None] * state.v
+    return p.sum(axis=0), (np.cross(state.x, p) + scene.inertia[:, None] * state.omega).sum(axis=0)
+
+
+def split_square(n, size, tilt=0.0, z=0.0):
+    """Corners of 2 n**2 triangles over a square of a size, tilted about y."""
+    g = np.linspace(-0.5 * size, 0.5 * size, n + 1)
+    x, y = np.meshgrid(g, g, indexing="ij")
+    p = np.stack([x * math.cos(tilt), y, z - x * math.sin(tilt)], axis=-1)
+    a, b, c, e = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
+    return np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, e], axis=2)]).reshape(-1, 3, 3)
+
+
 def bits(state: State) -> tuple[bytes, ...]:
     contacts = state.contacts
     return tuple(

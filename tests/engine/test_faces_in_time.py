@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.engine.conftest import bits
+from tests.engine.conftest import bits, split_square
 
 from ryusa.build import scene
 from ryusa.build.servo import Servo
@@ -27,15 +27,6 @@ LAW = {"timing": ContactTiming.AT_STEPS, "steps_per_contact": 20.0, "stiffness":
 
 def moving(wall: SolidWall, **motion: Any) -> SolidWall:
     return replace(wall, motion=WallMotion(**motion))
-
-
-def square(n: int, size: float, tilt: float = 0.0, z: float = 0.0) -> np.ndarray:
-    """Corners of 2 n**2 triangles over a square of a size, tilted about y."""
-    g = np.linspace(-0.5 * size, 0.5 * size, n + 1)
-    x, y = np.meshgrid(g, g, indexing="ij")
-    p = np.stack([x * math.cos(tilt), y, z - x * math.sin(tilt)], axis=-1)
-    a, b, c, e = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
-    return np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, e], axis=2)]).reshape(-1, 3, 3)
 
 
 def gas(
@@ -78,8 +69,8 @@ def test_grains_that_fall_into_a_drum_on_meshes_that_turn() -> None:
     a = 4.0 * D
     walls = [
         moving(cylinder("round", (0, 0, -a), (0, 0, 8 * D), 3.5 * D), spin=(0, 0, 6.0)),
-        triangles("fine", square(60, 12 * D, z=-a)),
-        moving(triangles("tilted", square(40, 8 * D, 0.3, -a)), spin=(0, 0, 3.0)),
+        triangles("fine", split_square(60, 12 * D, z=-a)),
+        moving(triangles("tilted", split_square(40, 8 * D, 0.3, -a)), spin=(0, 0, 3.0)),
     ]
     follow(gas((4, 4, 5), 1.02 * D, 0.3, walls), 2500)
 
@@ -87,7 +78,7 @@ def test_grains_that_fall_into_a_drum_on_meshes_that_turn() -> None:
 def test_fast_grains_that_hit_each_other_between_walls_that_move() -> None:
     """A paddle, a lid that swings and one that a servo drives at will, as fast as they may be."""
     a = 4.0 * D
-    sides = square(8, 2 * a, z=-a)
+    sides = split_square(8, 2 * a, z=-a)
     walls = [triangles(f"side {k}", np.roll(s * sides, k, axis=2)) for k in (1, 2) for s in (1.0, -1.0)]
     walls += [
         moving(triangles("floor", sides), amplitude=(0.0, 0.0, 0.4 * D), frequency=400.0),

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.engine.conftest import D, M, bits, elastic_law, pile, run
+from tests.engine.conftest import D, M, bits, elastic_law, momentum, pile, run
 from tests.engine.test_several_partners import box, box_planes
 
 from ryusa.build import scene
@@ -191,13 +191,11 @@ def test_angular_momentum_of_a_free_pair_is_kept_to_round_off():
         omega=[[50.0, 300.0, 20.0], [0.0, -100.0, 70.0]], contact=law, gravity=0.0, allow_overlap=True,
     )  # fmt: skip
 
-    def momentum(state):
-        p = fixed.m[:, None] * state.v
-        return p.sum(axis=0), (np.cross(state.x, p) + fixed.inertia[:, None] * state.omega).sum(axis=0)
-
     engine = run((fixed, first), 2000)
     assert len(engine.events()) >= 1
-    for before, after, size in zip(momentum(first), momentum(engine.state()), (5e-6, 1e-8), strict=True):
+    for before, after, size in zip(
+        momentum(fixed, first), momentum(fixed, engine.state()), (5e-6, 1e-8), strict=True
+    ):
         assert after == pytest.approx(before, rel=0.0, abs=1e-11 * size)
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.engine.conftest import bits, elastic_law, run
+from tests.engine.conftest import bits, elastic_law, run, split_square
 from tests.kernel_variants import full_but
 
 from ryusa.build import scene
@@ -27,15 +27,6 @@ def walled(walls, **keys):
     keys = {"d": D} | keys if "contact" in keys else KEYS | keys
     fixed, first = scene(**keys)
     return replace(with_walls(fixed, walls), world_low=(-9.0,) * 3, world_high=(9.0,) * 3), first
-
-
-def grid(n, size, tilt=0.0, z=0.0):
-    """Corners of 2 n**2 triangles over a square of a size, tilted about y."""
-    g = np.linspace(-0.5 * size, 0.5 * size, n + 1)
-    x, y = np.meshgrid(g, g, indexing="ij")
-    p = np.stack([x * math.cos(tilt), y, z - x * math.sin(tilt)], axis=-1)
-    a, b, c, e = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
-    return np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, e], axis=2)]).reshape(-1, 3, 3)
 
 
 def shell(n, radius, length=0.1):
@@ -65,7 +56,10 @@ def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(law):
     plane = run(made, steps)
     assert plane.tally().n_contact == 1  # it came to roll
     hops = len(plane.events())
-    for wall in (rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0)), triangles("floor", grid(60, 0.3))):
+    for wall in (
+        rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0)),
+        triangles("floor", split_square(60, 0.3)),
+    ):
         split = run(walled([wall], **how), steps)
         for name in ("x", "v", "omega"):
             a, b = getattr(plane.state(), name), getattr(split.state(), name)
@@ -83,7 +77,9 @@ def test_a_seam_between_two_walls_is_not_felt():
     left = rectangle("left", (-1, -1, 0), (1, 0, 0), (0, 2, 0))
     right = triangles(
         "right",
-        np.concatenate([grid(9, 0.2) + np.array([0.1, 0.011, 0.0]), grid(7, 0.2) + np.array([0.1, 0, 0])]),
+        np.concatenate(
+            [split_square(9, 0.2) + np.array([0.1, 0.011, 0.0]), split_square(7, 0.2) + np.array([0.1, 0, 0])]
+        ),
     )
     split = run(walled([left, right], **how), steps)
     for name in ("x", "v", "omega"):
@@ -125,7 +121,7 @@ def test_a_tilted_split_plane_is_a_plane_to_round_off():
     tilt, how = 0.3, {"x": [[0.0, 0.01, 0.55 * D]], "v": [[0.0, 0.2, 0.0]]}
     normal = (math.sin(tilt), 0.0, math.cos(tilt))
     plane = run(scene(planes=[("slope", (0, 0, 0), normal)], **KEYS, **how), 20_000).state()
-    split = run(walled([triangles("slope", grid(50, 0.4, tilt))], **how), 20_000).state()
+    split = run(walled([triangles("slope", split_square(50, 0.4, tilt))], **how), 20_000).state()
     assert np.linalg.norm(plane.x[0]) > 5 * D
     assert np.allclose(plane.x, split.x, rtol=1e-7, atol=1e-9)
     assert np.allclose(plane.v, split.v, rtol=1e-7, atol=1e-7)

@@ -154,7 +154,7 @@ def test_a_section_of_bed_counts_the_grains_over_it(flow):
 
 def test_results_do_not_depend_on_the_chunks_in_which_frames_are_read(flow, monkeypatch):
     whole = profiles(flow())
-    monkeypatch.setattr(importlib.import_module("ryusa.measure.profiles"), "CHUNK", 350)
+    monkeypatch.setattr(importlib.import_module("ryusa.measure.slices_in_layers"), "CHUNK", 350)
     found = profiles(flow())
     np.testing.assert_array_equal(found.phi.value, whole.phi.value)
     np.testing.assert_array_equal(found.q, whole.q)

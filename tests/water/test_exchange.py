@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.water.cells import faces_of, to_cells
 
 from ryusa.laws.slices import sphere_slice
 from ryusa.water import exchange
@@ -46,7 +47,9 @@ def test_slices_are_those_of_the_law_and_add_up_to_the_grain(packing):
     z, d, cells, _ = packing
     found = exchange.slices(z, d, cells)
     r, whole = 0.5 * d, math.pi / 6 * d**3
-    expected = [[sphere_slice(r[i], *edges) for edges in pairwise(cells.faces - z[i])] for i in range(len(z))]
+    expected = [
+        [sphere_slice(r[i], *edges) for edges in pairwise(faces_of(cells) - z[i])] for i in range(len(z))
+    ]
     np.testing.assert_allclose(dense(found) / whole[:, None], expected / whole[:, None], rtol=0, atol=1e-12)
     assert (dense(found) >= 0.0).all()
     np.testing.assert_allclose(found.whole, whole, rtol=1e-14)
@@ -70,7 +73,7 @@ def test_the_momentum_given_by_grains_is_that_received_by_the_cells(packing, sha
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     amounts = rng.normal(size=(len(z), *columns))
-    got = exchange.to_cells(found, amounts, share)
+    got = to_cells(found, amounts, share)
     size = np.abs(amounts).sum(axis=0)
     assert np.all(np.abs(got.cells.sum(axis=0) + got.below + got.above - amounts.sum(axis=0)) < 1e-12 * size)
     if share == "submerged":
@@ -87,7 +90,7 @@ def test_gather_and_scatter_conserve_work(packing, share):
     found = exchange.slices(z, d, cells)
     force, speed = rng.normal(size=len(z)), rng.normal(size=cells.n)
     by_grains = force * exchange.to_grains(found, speed, share)
-    by_cells = exchange.to_cells(found, force, share).cells * speed
+    by_cells = to_cells(found, force, share).cells * speed
     assert by_grains.sum() == pytest.approx(by_cells.sum(), abs=1e-12 * np.abs(force).sum())
 
 
@@ -112,7 +115,7 @@ def test_a_uniform_flow_is_sampled_exactly(packing):
         exchange.to_grains(found, u, "submerged")[wet], u[:1].repeat(wet.sum(), 0), rtol=1e-12
     )
     assert not exchange.to_grains(found, u, "submerged")[~wet].any()
-    linear = 5.0 * (cells.faces - cells.z_low)
+    linear = 5.0 * (faces_of(cells) - cells.z_low)
     np.testing.assert_allclose(
         exchange.to_grains(found, np.diff(linear) / cells.dz), 5.0 * found.share, rtol=1e-10
     )
@@ -128,7 +131,7 @@ def test_bits_do_not_depend_on_where_grains_lie_in_memory(packing, seed):
     np.testing.assert_array_equal(
         exchange.weighted_concentration(other, v[ids]), exchange.weighted_concentration(one, v)
     )
-    first, second = exchange.to_cells(one, v), exchange.to_cells(other, v[ids])
+    first, second = to_cells(one, v), to_cells(other, v[ids])
     np.testing.assert_array_equal(second.cells, first.cells)
     np.testing.assert_array_equal(second.above, first.above)
     np.testing.assert_array_equal(second.below, first.below)
@@ -155,9 +158,9 @@ def test_a_grain_half_out_of_the_water_agrees_with_hand_calculation():
     assert found.above[0] == pytest.approx(math.pi / 12 * D**3)
     assert found.below[2] == pytest.approx(math.pi / 6 * D**3)
     weight = np.array([2.0, 4.0, 8.0])
-    got = exchange.to_cells(found, weight)
+    got = to_cells(found, weight)
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 1.0, 8.0, 1.0], atol=1e-15)
-    got = exchange.to_cells(found, weight, "submerged")
+    got = to_cells(found, weight, "submerged")
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 2.0, 8.0, 0.0], atol=1e-15)
     speed = np.array([1.0, 2.0, 3.0])
     np.testing.assert_allclose(exchange.to_grains(found, speed), [1.5, 2.0, 0.0])
@@ -179,14 +182,14 @@ def test_a_linear_flow_is_sampled_at_the_centre_in_the_limit_of_thin_cells(share
     cells = Cells(z_low=0.0, dz=share * D, n=int(12 / share), area=AREA)
     z = np.random.default_rng(0).uniform(2 * D, 10 * D, 300)
     found = exchange.slices(z, np.full(300, D), cells)
-    off = exchange.to_grains(found, 3.0 * cells.middles) / 3.0 - z
+    off = exchange.to_grains(found, 3.0 * (faces_of(cells)[:-1] + 0.5 * cells.dz)) / 3.0 - z
     assert np.abs(off).max() < 0.06 * share**2 * D
 
 
 def test_no_grains_are_accepted():
     none = exchange.slices(np.zeros(0), np.zeros(0), Cells(0.0, D, 4, AREA))
     assert not exchange.concentration(none).any()
-    assert exchange.to_cells(none, np.zeros((0, 2))).cells.shape == (4, 2)
+    assert to_cells(none, np.zeros((0, 2))).cells.shape == (4, 2)
     assert exchange.to_grains(none, np.ones(4)).shape == (0,)
 
 
@@ -204,7 +207,7 @@ def test_invalid_input_is_refused():
     with pytest.raises(ValueError, match="permutation"):
         exchange.slices(np.zeros(2), np.full(2, D), cells, ids=np.array([1, 1]))
     with pytest.raises(ValueError, match="one row per grain"):
-        exchange.to_cells(one, np.zeros(2))
+        exchange.weighted_concentration(one, np.zeros(2))
     with pytest.raises(ValueError, match="one row per cell"):
         exchange.to_grains(one, np.zeros(5))
     with pytest.raises(ValueError, match="the same cells"):

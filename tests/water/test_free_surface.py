@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.water.cells import to_cells
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
@@ -12,7 +13,7 @@ from ryusa.laws.families import BedKind, Buoyancy, Drag, Lift, Mixing, Profile, 
 from ryusa.model import Column, Water
 from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
-from ryusa.water.exchange import Cells, slices, to_cells
+from ryusa.water.exchange import Cells, slices
 from ryusa.water.free_surface import submerged_part
 
 D, G = 2.0e-3, 9.80665

@@ -19,7 +19,6 @@ from ryusa.spelling import nearest_word
 
 Numbers = NDArray[np.int8]
 MadeOf = Mapping[str, str | Sequence[str]]
-_OF_PAIRS = ("friction", "restitution", "rolling_coefficient", "adhesion_amount")
 
 
 @dataclass(frozen=True)
@@ -260,15 +259,15 @@ def _values(
     rolling: RollingLaw,
 ) -> dict[str, float]:
     """What belongs to a pair, of two materials or one; that of the first where nobody asks for it."""
-    base = {
+    base = {  # keys of a pair, and what the laws of the scene say
         "friction": contact.mu, "restitution": contact.e_n, "rolling_coefficient": rolling.coefficient,
         "adhesion_amount": contact.adhesion_amount,
     }  # fmt: skip
     pair = pairs.get((a, b), pairs.get((b, a)))
     found: dict[str, float] = {}
-    for key in _OF_PAIRS:
+    for key, common in base.items():
         both = [getattr(by_name.get(name), key, None) for name in (a, b)]
-        own = [base[key] if one is None else float(one) for one in both]
+        own = [common if one is None else float(one) for one in both]
         asked = None if pair is None else getattr(pair, key)
         if meet and asked is None and own[0] != own[1]:
             raise CaseError(

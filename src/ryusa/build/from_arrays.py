@@ -18,9 +18,9 @@ from ryusa.build.array_traffic import (
 )
 from ryusa.build.assemble import Laws, assemble, masses
 from ryusa.build.feeds import before_feeding, moving_with, steps_between
-from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.overlaps import refuse_overlaps, refuse_overlaps_with_walls
 from ryusa.build.placement import Placement, Wall
-from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, with_room, with_walls
+from ryusa.build.walls import SolidWall, with_room, with_walls
 from ryusa.casefile.record.time import steps_of_law
 from ryusa.errors import CaseError
 from ryusa.laws import collision

@@ -1,14 +1,17 @@
 """Materials of the grains, fixed grains and planes of a case."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.build.laws import contact_of, rolling_of
 from ryusa.build.placement import Placement
 from ryusa.build.sizes import laid_materials
 from ryusa.casefile.builders.table import made_of
 from ryusa.casefile.case import Case
-from ryusa.casefile.materials.values import GRAINS, density, names_of
-from ryusa.model import Traffic
+from ryusa.casefile.materials.values import GRAINS, case_of_pair, density, names_of
+from ryusa.model import Materials, Scene, Traffic
 from ryusa.model.scene import Floats
 
 Numbers = NDArray[np.int8]
@@ -43,3 +46,20 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
 def densities(case: Case, of: Numbers) -> Floats:
     """Density of each grain [kg/m3]."""
     return np.array([density(case, name) for name in names_of(case.materials)])[of]
+
+
+def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
+    """The same scene with the materials of a case, `of` by id without faces; as it is where there is one."""
+    if not len(of):
+        return scene
+    names, walls = names_of(case.materials), scene.walls
+    if walls is not None:
+        of_case = [names.index(one.material or GRAINS) for one in case.walls]
+        others = walls.names[len(of_case) :]  # bottom and dams of a stream
+        bed = names.index(case.grains.bed_material or GRAINS)
+        own = np.array([*of_case, *(bed for _ in others)], np.int8)
+        of = np.concatenate([of, own[walls.wall]])
+    of.flags.writeable = False
+    pairs = [case_of_pair(case, *sorted((a, b), key=names.index)) for a in names for b in names]
+    contact, rolling = tuple(map(contact_of, pairs)), tuple(map(rolling_of, pairs))
+    return replace(scene, materials=Materials(names, of, contact, rolling))

@@ -1,13 +1,22 @@
-"""Check that first grains keep to lanes and do not overlap; names the pair with the largest overlap."""
+"""Check that first grains keep to lanes and overlap neither each other nor walls; names the worst pair."""
+
+from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.build.placement import Placement, unit_normal
+from ryusa.build.walls import SolidWall
 from ryusa.errors import CaseError
+from ryusa.model import FaceKind
 from ryusa.model.near_pairs import near_free_pairs
+from ryusa.model.scene import Floats
+from ryusa.model.wall_shape import nearest_on_face
+from ryusa.model.walls import Ints, face_boxes
 
 TOLERANCE = 1.0e-9  # of the smaller diameter
+_AT_ONCE = 2_000_000  # pairs of a grain and a face near it
 
 
 def lanes_of(placement: Placement, key: str) -> NDArray[np.intp]:
@@ -100,3 +109,45 @@ def name(placement: Placement, grain: int) -> str:
     if placement.names:
         return f"the grain {placement.names[grain]} at {where}"
     return f"{'free' if grain < n else 'fixed'} grain {grain} at {where}"
+
+
+def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall], key: str) -> None:
+    """Raise a `CaseError` that names a first grain and the wall that it overlaps most."""
+    if placement.allow_overlap or not walls or not len(placement.d):
+        return
+    from scipy.spatial import KDTree
+
+    tree, largest = KDTree(placement.x), 0.5 * float(placement.d.max())
+    for wall in walls:
+        low, high = face_boxes(wall.face, wall.kind)
+        middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1) + largest
+        near = np.cumsum(tree.query_ball_point(middle, reach, return_length=True))
+        chunk = near // _AT_ONCE  # so that few pairs are held at a time
+        worst, grain = 0.0, -1
+        for one in np.split(np.arange(len(near)), np.flatnonzero(np.diff(chunk)) + 1):
+            found = tree.query_ball_point(middle[one], reach[one])
+            face = np.repeat(one, [len(some) for some in found])
+            k = np.fromiter(chain.from_iterable(found), np.int64, len(face))
+            x = placement.x[k]
+            close = np.all((x > low[face] - largest) & (x < high[face] + largest), axis=1)
+            close &= _from_plane(wall, face, x) < 0.5 * placement.d[k]
+            for f, i in zip(face[close].tolist(), k[close].tolist(), strict=True):
+                x = placement.x[i]
+                apart = float(np.linalg.norm(nearest_on_face(wall.face[f], int(wall.kind[f]), x) - x))
+                relative = 0.5 - apart / float(placement.d[i])
+                if relative > worst:
+                    worst, grain = relative, i
+        if worst > TOLERANCE:
+            who = name(placement, grain)
+            text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d"
+            across = float((high.max(axis=0) - low.min(axis=0)).max())
+            hint = f", or check its unit: it is {across:.3g} m long" if len(wall.face) > 1 else ""
+            raise CaseError(key, None, f"{text}; move the wall or the grains{hint}")
+
+
+def _from_plane(wall: SolidWall, face: Ints, x: Floats) -> Floats:
+    """Distance of points from the planes of triangles [m]; 0 for other faces."""
+    normal = np.cross(wall.face[:, 3:6], wall.face[:, 6:9])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    normal[wall.kind != FaceKind.TRIANGLE] = 0.0
+    return np.abs(np.sum((x - wall.face[face, :3]) * normal[face], axis=1))

@@ -65,10 +65,8 @@ class Placement:
         if not len(every):  # water alone
             return (-math.inf, -math.inf, -math.inf), (math.inf, math.inf, math.inf)
         d, low, high = self.d_max, every.min(axis=0), every.max(axis=0)
-        below, above = (
-            [float(low[k] - ROOM_ASIDE * d) for k in (0, 1)],
-            [float(high[k] + ROOM_ASIDE * d) for k in (0, 1)],
-        )
+        below = [float(low[k] - ROOM_ASIDE * d) for k in (0, 1)]
+        above = [float(high[k] + ROOM_ASIDE * d) for k in (0, 1)]
         for k in (0, 1):
             if np.isfinite(self.period[k]) or (k == 0 and self.endless):
                 below[k], above[k] = -float("inf"), float("inf")

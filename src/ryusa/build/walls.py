@@ -3,14 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ryusa.build.overlaps import TOLERANCE
-from ryusa.build.overlaps import name as name_of
-from ryusa.build.placement import ROOM_BELOW, Placement
+from ryusa.build.placement import ROOM_BELOW
 from ryusa.build.servo import Servo, servo_rows
 from ryusa.build.wall_checks import refuse_wide_round_faces
 from ryusa.casefile.case import Case
@@ -21,7 +19,6 @@ from ryusa.formats.mesh import MOST_TRIANGLES
 from ryusa.model import FaceKind, Scene, Walls
 from ryusa.model.groups import groups
 from ryusa.model.scene import Floats
-from ryusa.model.wall_shape import nearest_on_face
 from ryusa.model.walls import (
     AXIS_POINT,
     PHASE,
@@ -38,7 +35,6 @@ from ryusa.model.walls import (
 from ryusa.model.welding import sides_of, welded
 
 FOLD = math.radians(30.0)  # angle up to which two triangles are one smooth surface
-_AT_ONCE = 2_000_000  # pairs of a grain and a face near it
 _SHARE = 4.0  # of a period: the longest side of a triangle along it
 
 
@@ -288,48 +284,6 @@ def _servo(wall: WallSection, made: SolidWall) -> Servo | None:
     travel = extent if asked.max_travel is None else asked.max_travel
     force, pressure = (math.nan if one is None else one for one in (asked.force, asked.pressure))
     return Servo(asked.direction, asked.max_speed, travel, force, pressure)
-
-
-def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall], key: str) -> None:
-    """Raise a `CaseError` that names a first grain and the wall that it overlaps most."""
-    if placement.allow_overlap or not walls or not len(placement.d):
-        return
-    from scipy.spatial import KDTree
-
-    tree, largest = KDTree(placement.x), 0.5 * float(placement.d.max())
-    for wall in walls:
-        low, high = face_boxes(wall.face, wall.kind)
-        middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1) + largest
-        near = np.cumsum(tree.query_ball_point(middle, reach, return_length=True))
-        chunk = near // _AT_ONCE  # so that few pairs are held at a time
-        worst, grain = 0.0, -1
-        for one in np.split(np.arange(len(near)), np.flatnonzero(np.diff(chunk)) + 1):
-            found = tree.query_ball_point(middle[one], reach[one])
-            face = np.repeat(one, [len(some) for some in found])
-            k = np.fromiter(chain.from_iterable(found), np.int64, len(face))
-            x = placement.x[k]
-            close = np.all((x > low[face] - largest) & (x < high[face] + largest), axis=1)
-            close &= _from_plane(wall, face, x) < 0.5 * placement.d[k]
-            for f, i in zip(face[close].tolist(), k[close].tolist(), strict=True):
-                x = placement.x[i]
-                apart = float(np.linalg.norm(nearest_on_face(wall.face[f], int(wall.kind[f]), x) - x))
-                relative = 0.5 - apart / float(placement.d[i])
-                if relative > worst:
-                    worst, grain = relative, i
-        if worst > TOLERANCE:
-            who = name_of(placement, grain)
-            text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d"
-            across = float((high.max(axis=0) - low.min(axis=0)).max())
-            hint = f", or check its unit: it is {across:.3g} m long" if len(wall.face) > 1 else ""
-            raise CaseError(key, None, f"{text}; move the wall or the grains{hint}")
-
-
-def _from_plane(wall: SolidWall, face: Ints, x: Floats) -> Floats:
-    """Distance of points from the planes of triangles [m]; 0 for other faces."""
-    normal = np.cross(wall.face[:, 3:6], wall.face[:, 6:9])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
-    normal[wall.kind != FaceKind.TRIANGLE] = 0.0
-    return np.abs(np.sum((x - wall.face[face, :3]) * normal[face], axis=1))
 
 
 def with_room(scene: Scene, low: bool, high: bool) -> Scene:

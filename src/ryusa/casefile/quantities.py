@@ -91,8 +91,6 @@ Density = Annotated[float, _si("kg/m3"), _text("density", "2650 kg/m3", "2.65 g/
 Stiffness = Annotated[float, _si("N/m"), _text("stiffness", "100 N/cm", "1e4 N/m")]
 Pressure = Annotated[float, _si("Pa"), _text("pressure", "50 MPa", "1e7 Pa")]
 Dashpot = Annotated[float, _si("N s/m"), _text("damping constant", "0.001 N s/cm")]
-SurfaceEnergy = Annotated[float, _si("J/m2"), _text("energy per area", "0.05 J/m2", "50 mN/m")]
-EnergyDensity = Annotated[float, _si("J/m3"), _text("energy per volume", "1e5 J/m3", "100 kPa")]
 Force = Annotated[float, _si("N"), _text("force", "0 N", "1 mN")]
 Acceleration = Annotated[float, _si("m/s2"), _text("acceleration", "9.8 m/s2")]
 Viscosity = Annotated[float, _si("m2/s"), _text("kinematic viscosity", "1e-6 m2/s")]
@@ -114,3 +112,16 @@ Slope = Annotated[Ratio, Field(ge=-14, le=14)]
 SlopeAngle = Annotated[Angle, Field(ge=-STEEPEST, le=STEEPEST)]
 FrictionAngle = Annotated[Angle, Field(ge=0, lt=math.pi / 2)]
 FrictionCoefficient = Annotated[Number, Field(ge=0, le=1.0e6)]
+Restitution = Annotated[Number, Field(gt=0, le=1)]
+RollingCoefficient = Annotated[Number, Field(ge=0)]
+SpringStiffness = Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)]
+YoungsModulus = Annotated[Pressure, Field(ge=1.0, le=1.0e15)]
+PoissonRatio = Annotated[Number, Field(ge=0, le=0.5)]
+PullOffForce = Annotated[Force, Field(ge=0, le=1.0e9)]
+WorkOfAdhesion = Annotated[
+    float, _si("J/m2"), _text("energy per area", "0.05 J/m2", "50 mN/m"), Field(ge=0, le=1.0e9)
+]
+AdhesionDensity = Annotated[
+    float, _si("J/m3"), _text("energy per volume", "1e5 J/m3", "100 kPa"), Field(ge=0, le=1.0e15)
+]
+GrainDensity = Annotated[Density, Field(ge=1.0, le=1.0e6)]

@@ -28,7 +28,7 @@ from ryusa.casefile.contact.values import restitution, stiffness
 from ryusa.casefile.feeds.schema import FeedSection
 from ryusa.casefile.grains.schema import spread_of
 from ryusa.casefile.grains.values import has_own_sizes, laid_shares
-from ryusa.casefile.materials.values import GRAINS, meeting
+from ryusa.casefile.materials.values import GRAINS, OF_PAIRS, SAID_ALSO, meeting
 from ryusa.casefile.motion import MotionSection, slope
 from ryusa.casefile.record.schema import Timeline
 from ryusa.casefile.record.values import events_of
@@ -156,7 +156,8 @@ def _of_materials(case: Case) -> Iterator[str]:
         if not touched or (name, name) in pairs:
             continue
         entries = [said.get(frozenset(pair)) for pair in touched]
-        for keys in _OF_CONTACT:
+        for key in OF_PAIRS:
+            keys = SAID_ALSO.get(key, (key,))
             own = [key for key in keys if given(one, key)]
             if own and all(entry is not None and any(given(entry, key) for key in keys) for entry in entries):
                 with_it = ", ".join(b if a == name else a for a, b in touched)
@@ -164,12 +165,6 @@ def _of_materials(case: Case) -> Iterator[str]:
                     f"materials.{name}.{own[0]} has no effect: two of {name} never touch, and [[pairs]] "
                     f"gives it with {with_it}"
                 )
-
-
-_OF_CONTACT = (
-    ("friction", "friction_angle"), ("restitution",), ("rolling_coefficient",), ("pull_off_force",),
-    ("work_of_adhesion",), ("adhesion_density",),
-)  # fmt: skip
 
 
 def _motion(motion: MotionSection, timeline: Timeline) -> Found:

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ryusa.cli.options import Quiet
-from ryusa.cli.study import (
+from ryusa.cli.many_runs import (
     DEFAULT,
     Again,
     Jobs,
@@ -19,6 +18,7 @@ from ryusa.cli.study import (
     report_failures,
     writing,
 )
+from ryusa.cli.options import Quiet
 
 if TYPE_CHECKING:
     from ryusa.campaigns.calibrate import Calibration, CalibrationAsked

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ryusa.cli.options import Quiet
-from ryusa.cli.study import (
+from ryusa.cli.many_runs import (
     DEFAULT,
     Again,
     Jobs,
@@ -26,6 +25,7 @@ from ryusa.cli.study import (
     print_counts,
     print_listed,
 )
+from ryusa.cli.options import Quiet
 
 if TYPE_CHECKING:
     from ryusa.study.ledger import Ledger

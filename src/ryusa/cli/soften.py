@@ -6,9 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ryusa.catalogue import MEASURES
-from ryusa.cli.options import Quiet
-from ryusa.cli.run import CaseFile, Settings, overrides_of
-from ryusa.cli.study import (
+from ryusa.cli.many_runs import (
     DEFAULT,
     FAILED,
     Again,
@@ -24,6 +22,8 @@ from ryusa.cli.study import (
     plan_of,
     print_table,
 )
+from ryusa.cli.options import Quiet
+from ryusa.cli.run import CaseFile, Settings, overrides_of
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ryusa.catalogue import MEASURES
-from ryusa.cli.options import Quiet
-from ryusa.cli.run import CaseFile, Settings, overrides_of
-from ryusa.cli.study import (
+from ryusa.cli.many_runs import (
     DEFAULT,
     Again,
     Jobs,
@@ -22,6 +20,8 @@ from ryusa.cli.study import (
     report_failures,
     writing,
 )
+from ryusa.cli.options import Quiet
+from ryusa.cli.run import CaseFile, Settings, overrides_of
 
 if TYPE_CHECKING:
     from ryusa.campaigns.sweep import SweepPlan

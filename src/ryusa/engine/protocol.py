@@ -8,7 +8,7 @@ import numpy as np
 
 from ryusa.errors import RunError
 from ryusa.model import Scene, State, Tally
-from ryusa.model.rows import RowsInPieces
+from ryusa.model.pieces import RowsInPieces
 from ryusa.model.scene import Floats
 
 

@@ -284,9 +284,8 @@ def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
     shown = np.where(found.depth > THIN, found.depth, np.nan) * scale
     _map(figure, axes, found, shown, f"depth  ({unit})", side, cmap="Blues", vmin=0.0)
     over_dams = np.any([(found.x > first) & (found.x < end) for _, first, end in found.dams], axis=0)
-    flowing = np.ma.masked_invalid(
-        np.where(over_dams, np.nan, found.froude)
-    )  # no line along a dam or a shore
+    # No line along a dam or a shore
+    flowing = np.ma.masked_invalid(np.where(over_dams, np.nan, found.froude))
     if len(found.t) > 1 and len(found.x) > 1 and flowing.count() and flowing.min() < 1.0 < flowing.max():
         axes.contour(found.x, found.t, flowing, levels=[1.0], colors=LINE, linewidths=0.8)
         axes.plot([], [], color=LINE, lw=0.8, label="Froude number 1")

@@ -50,9 +50,8 @@ def snapshot(seen: Snapshot, colour: Colour = "speed", bounds: Bounds | None = N
     if colour == "speed":
         values, text, hue = seen.speed, "speed  (m/s)", "YlGnBu"
         still = STILL * math.sqrt(G * float(seen.d.mean())) if len(seen.d) else 1.0
-        scale = Normalize(
-            0.0, max(bounds.speed, still)
-        )  # so that noise of grains at rest does not fill the scale
+        # So that noise of grains at rest does not fill the scale
+        scale = Normalize(0.0, max(bounds.speed, still))
     else:
         values, text, hue = seen.spin, "spin  $\\omega_y$  (rad/s)", "RdBu_r"
         most = max(bounds.spin, 1.0)

@@ -58,12 +58,10 @@ def tracks(
     top = float(found.z[inside].max()) + 0.8 * d
     under = [found.bed_z - 0.1 * d, found.loose_z - 0.6 * found.loose_d]
     bottom = float(np.concatenate(under).min()) if len(found.bed_z) else float(found.z.min()) - d
-    each = (
-        (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST
-    )  # smallest length of a row for each row drawn
-    fit = max(
-        math.floor(math.sqrt(total / each)), 1
-    )  # with more rows, a row would be longer than its part of the path
+    # Smallest length of a row for each row drawn.
+    each = (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST
+    # With more rows, a row would be longer than its part of the path
+    fit = max(math.floor(math.sqrt(total / each)), 1)
     rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), fit, 8)
     span, tall = total / rows, each * rows
     if span < tall:
@@ -135,9 +133,8 @@ def tracks_side_by_side(
     row = (style.PAGE - 0.6) * (top - bottom) / length
     figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.25), sharex=True)
     for panel, (name, one) in zip(axes, found.items(), strict=True):
-        start = (
-            math.floor(float(one.x[0, 0]) / d) * d
-        )  # a multiple of the diameter, so that all beds are drawn alike
+        # A multiple of the diameter, so that all beds are drawn alike.
+        start = math.floor(float(one.x[0, 0]) / d) * d
         moved = replace(one, x=one.x - start, bed_x=one.bed_x - start)
         _bed(panel, moved, 0.0, length, scale)
         for c in range(moved.x.shape[1]):

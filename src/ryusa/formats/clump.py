@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ryusa.formats.table import metres, name_and_unit, read_table
+from ryusa.formats.table import read_lengths
 from ryusa.formats.text import D_HIGH, D_LOW
 from ryusa.model.clump import Clump, ClumpFault
 
@@ -25,11 +25,8 @@ def read_clump(path: Path, name: str) -> Clump:
     ------
     ParseError : the file is no such table, or its spheres make no clump; names line and column.
     """
-    rows, heads = read_table(path, name, "sphere", "at least one sphere", _EXAMPLE, _column, COLUMNS)
-    names = [one for one, _ in heads]
-    where = [names.index(one) for one in COLUMNS]
-    values = rows.columns(where, [f"column '{one}'" for one in COLUMNS])
-    x, y, z, d = (one * heads[k][1] for one, k in zip(values, where, strict=True))
+    called = {one: f"column '{one}'" for one in COLUMNS}
+    rows, where, (x, y, z, d) = read_lengths(path, name, "sphere", "at least one sphere", _EXAMPLE, called)
     for row, one in enumerate(d.tolist()):
         if not D_LOW <= one <= D_HIGH:
             raise rows.error(
@@ -41,14 +38,3 @@ def read_clump(path: Path, name: str) -> Clump:
         raise rows.error(
             min(fault.sphere, len(rows.where) - 1), 0, f"{fault}; spheres count from 0"
         ) from None
-
-
-def _column(cell: str) -> tuple[str, float]:
-    """Name of a column and its factor to metres.
-
-    Raises
-    ------
-    ValueError : an unknown column, or one without a unit that fits.
-    """
-    column, unit = name_and_unit(cell, COLUMNS, _EXAMPLE)
-    return column, metres(column, unit)

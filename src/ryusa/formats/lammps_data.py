@@ -81,7 +81,7 @@ def read_data(path: Path, name: str, options: ReadOptions) -> GrainTable:
     values = atoms.columns(list(places.values()), [f"'{one}' of atom_style {style.name}" for one in places])
     columns = dict(zip(places, values, strict=True))
     if speeds is not None:
-        columns |= _in_order(atoms, ids, speeds)
+        columns |= _in_order(ids, speeds)
     table = GrainTable(
         name=name,
         columns=options.in_si(columns),
@@ -191,7 +191,7 @@ def _skip(lines: Lines) -> None:
         pass
 
 
-def _in_order(atoms: Rows, ids: np.ndarray, speeds: Rows) -> dict[str, np.ndarray]:
+def _in_order(ids: np.ndarray, speeds: Rows) -> dict[str, np.ndarray]:
     """Velocities and spins, in the order of the atoms."""
     place = {one: k for k, one in enumerate(ids.tolist())}
     order = np.zeros(len(ids), dtype=np.intp)

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from ryusa.formats.table import metres, name_and_unit, read_table
+from ryusa.formats.table import read_lengths
 
-COLUMNS = ("x", "z")
 _EXAMPLE = "'x [m],z [mm]'"
 
 
@@ -20,20 +19,6 @@ def read_line(path: Path, name: str) -> tuple[tuple[float, float], ...]:
     ------
     ParseError : the file is not such a table; names line and column.
     """
-    rows, heads = read_table(path, name, "point", "at least two points", _EXAMPLE, _column, COLUMNS)
-    names = [one for one, _ in heads]
-    places = names.index("x"), names.index("z")
-    x, z = rows.columns(list(places), ["a place x", "a height z"])
-    x, z = x * heads[places[0]][1], z * heads[places[1]][1]
+    called = {"x": "a place x", "z": "a height z"}
+    _, _, (x, z) = read_lengths(path, name, "point", "at least two points", _EXAMPLE, called)
     return tuple(zip(x.tolist(), z.tolist(), strict=True))
-
-
-def _column(cell: str) -> tuple[str, float]:
-    """Name of a column and its factor.
-
-    Raises
-    ------
-    ValueError : an unknown column, or one without a unit of length.
-    """
-    column, unit = name_and_unit(cell, COLUMNS, _EXAMPLE)
-    return column, metres(column, unit)

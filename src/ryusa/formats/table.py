@@ -1,7 +1,10 @@
 """Small CSV tables whose header names the columns with their units."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
 from ryusa.formats.dialect import Dialect, dialect_of
@@ -52,6 +55,32 @@ def read_table(
         if not where:
             raise lines.error(f"expected {least} below the header")
     return Rows(name, where, dialect.column, dialect.split, dialect.number), heads
+
+
+def read_lengths(
+    path: Path, name: str, row: str, least: str, example: str, called: Mapping[str, str]
+) -> tuple[Rows, list[int], list[NDArray[np.float64]]]:
+    """Rows of a table of lengths, the place of each column, and its values [m].
+
+    Parameters
+    ----------
+    path, name, row, least, example : as of `read_table`.
+    called : columns that must be there, and what messages call a value of each.
+
+    Raises
+    ------
+    ParseError : the file is not such a table; names line and column.
+    """
+
+    def column(cell: str) -> tuple[str, float]:
+        one, unit = name_and_unit(cell, called, example)
+        return one, metres(one, unit)
+
+    rows, heads = read_table(path, name, row, least, example, column, tuple(called))
+    names = [one for one, _ in heads]
+    places = [names.index(one) for one in called]
+    values = rows.columns(places, list(called.values()))
+    return rows, places, [one * heads[k][1] for one, k in zip(values, places, strict=True)]
 
 
 def name_and_unit(cell: str, known: Collection[str], example: str) -> tuple[str, str]:

@@ -14,12 +14,13 @@ from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.front import Front, front
+from ryusa.measure.layers import Layers
 from ryusa.measure.long_section import LongSection, long_section
 from ryusa.measure.mill import Mill, mill
 from ryusa.measure.passages import Passages, passages
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.plane_shear import PlaneShear, plane_shear
-from ryusa.measure.profiles import Layers, Profiles, profiles
+from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation

@@ -10,7 +10,7 @@ from ryusa.compiled.function import compiled
 from ryusa.errors import ResultsError
 from ryusa.laws.slices import sphere_slice
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import CHUNK
+from ryusa.measure.slices_in_layers import CHUNK
 from ryusa.model import ColumnRow
 from ryusa.printed import ByShape
 from ryusa.results.water import WaterFrames

@@ -81,9 +81,8 @@ class Stays(ByShape):
         whole = self.frames.astype(np.float64)
         if self.cut.any():
             steps, left = self._survival()
-            area = np.append(
-                np.cumsum((np.diff(steps) * left[:-1])[::-1])[::-1], 0.0
-            )  # from a step to the last
+            # From a step to the last
+            area = np.append(np.cumsum((np.diff(steps) * left[:-1])[::-1])[::-1], 0.0)
             at = np.searchsorted(steps, whole[self.cut] - HALF)
             whole[self.cut] = np.maximum(steps[at] + area[at] / left[at], whole[self.cut])
         return whole * self.interval

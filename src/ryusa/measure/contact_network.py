@@ -104,10 +104,8 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
         now = float(run.frames.t[k])
         i, j = touching_pairs(x, scene, now)
         gap, normal, overlap = _geometry(x, i, j, scene, now)
-        f_n, f_s = (
-            shares_of_contacts(scene, x, now, i, j) * pair_springs(scene, i, j, overlap)[0] * overlap,
-            np.full(len(i), np.nan),
-        )
+        f_n = shares_of_contacts(scene, x, now, i, j) * pair_springs(scene, i, j, overlap)[0] * overlap
+        f_s = np.full(len(i), np.nan)
         f_n -= pair_attractions(scene, i, j, overlap)[0]
         sliding = np.zeros(len(i), dtype=np.bool_)
     chosen, slices, slice_y = 0, 1, None

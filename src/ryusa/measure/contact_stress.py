@@ -8,7 +8,8 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.laws.families import Profile
 from ryusa.measure._run import Floats, Run, crest_of
-from ryusa.measure.profiles import Layers, _mean, _quotient, area_of
+from ryusa.measure.bed_area import area_of
+from ryusa.measure.layers import Layers, layers_mean, layers_quotient
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -152,13 +153,15 @@ def contact_stress(
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
     pressure = whole[:, (XX, ZZ) if scene.plane_case else (XX, YY, ZZ)].mean(axis=1)
-    p = _mean("p", "Pa", pressure)
+    p = layers_mean("p", "Pa", pressure)
     sign = np.where(whole[:, XZ].mean(axis=0) < 0.0, -1.0, 1.0)
     d, density = float(scene.d.mean()), float(scene.m.sum() / (np.pi / 6.0 * scene.d**3).sum())
     shear = np.gradient(mean[0], length)
     inertial = np.abs(shear) * d * np.sqrt(density / np.where(p.value > 0.0, p.value, np.nan))
     above = weights.mean(axis=0)
-    stress = {name: _mean(name, "Pa", whole[:, c]) for c, name in enumerate(("xx", "yy", "zz", "xz", "zx"))}
+    stress = {
+        name: layers_mean(name, "Pa", whole[:, c]) for c, name in enumerate(("xx", "yy", "zz", "xz", "zx"))
+    }
     wet = bool(run.case.get("water")) or scene.water.profile != Profile.NONE
     load = max(float(scene.m.sum() * np.abs(scene.gravity[2]) / area), float(np.abs(above[1]).max()))
     total = math.nan if wet or load == 0.0 else load
@@ -169,17 +172,17 @@ def contact_stress(
         z=z,
         length=length,
         crest=crest_of(scene) if scene.n_fixed else math.nan,
-        phi=_mean("phi", "-", mass / density),
-        v_x=_quotient("v_x", "m/s", moved[:, 1], mass),
+        phi=layers_mean("phi", "-", mass / density),
+        v_x=layers_quotient("v_x", "m/s", moved[:, 1], mass),
         **stress,
-        contact_zz=_mean("contact_zz", "Pa", contact[:, ZZ]),
-        contact_xz=_mean("contact_xz", "Pa", contact[:, XZ]),
+        contact_zz=layers_mean("contact_zz", "Pa", contact[:, ZZ]),
+        contact_xz=layers_mean("contact_xz", "Pa", contact[:, XZ]),
         p=p,
-        mu=_quotient("mu", "-", sign * whole[:, XZ], pressure),
+        mu=layers_quotient("mu", "-", sign * whole[:, XZ], pressure),
         shear_rate=shear,
         inertial_number=inertial,
         **{
-            f"fabric_{name}": _quotient(f"fabric_{name}", "-", directions[:, 1 + c], directions[:, 0])
+            f"fabric_{name}": layers_quotient(f"fabric_{name}", "-", directions[:, 1 + c], directions[:, 0])
             for c, name in enumerate(("xx", "zz", "xz"))
         },
         weight=above[1],
@@ -227,9 +230,8 @@ def _plan(run: Run, first: int, last: int, scene: Scene) -> float:
             raise ResultsError(
                 "the scene is open along x, and its grains lie on a line: no area to divide by"
             ) from None
-        found.append(
-            float(hull.volume + hull.area * r + math.pi * r * r)
-        )  # in a plane these are area and rim
+        # In a plane these are area and rim
+        found.append(float(hull.volume + hull.area * r + math.pi * r * r))
     return float(np.mean(found))
 
 

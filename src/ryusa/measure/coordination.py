@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import Layers, _frames, _quotient
+from ryusa.measure.layers import Layers, layers_quotient
+from ryusa.measure.slices_in_layers import frames_of_grains
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averaged, Averages
@@ -87,7 +88,7 @@ def coordination(
     them the mean is that of all contacts of the other grains (z* of Agnolin and Roux 2007, Phys. Rev. E 76,
     061302, who tell rattlers by the forces). The number depends on the stiffness: softer grains touch more.
     """
-    t, first, last, scene, since = _frames(run, begin, end)
+    t, first, last, scene, since = frames_of_grains(run, begin, end)
     thickness = layer * float(scene.d.mean())
     least = 2 if scene.plane_case else 4
     counts: list[Floats] = []
@@ -114,8 +115,8 @@ def coordination(
         least=least,
         z=np.asarray((low + np.arange(n_layer) + 0.5) * thickness, dtype=np.float64),
         thickness=thickness,
-        over_height=_quotient("coordination", "-", sums[:, :, 1], sums[:, :, 0]),
-        without_rattlers=_quotient("without_rattlers", "-", sums[:, :, 3], sums[:, :, 2]),
+        over_height=layers_quotient("coordination", "-", sums[:, :, 1], sums[:, :, 0]),
+        without_rattlers=layers_quotient("without_rattlers", "-", sums[:, :, 3], sums[:, :, 2]),
         averages=Averages(
             "coordination",
             (

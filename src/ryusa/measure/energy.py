@@ -84,9 +84,8 @@ def energy(run: Run) -> Energy:
     tally = run.tally
     if len(tally["t"]) and np.isnan(tally["start"]).all():
         raise ResultsError("the engine of this run keeps no account of energy")
-    unbooked = (
-        len(tally["t"]) > 1 and tally["start"][0] != tally["start"][-1]
-    )  # start is that of the first step
+    # The energy at the start is that of the first step.
+    unbooked = len(tally["t"]) > 1 and tally["start"][0] != tally["start"][-1]
     if unbooked or (len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start"))):
         tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}

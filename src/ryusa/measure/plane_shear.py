@@ -8,7 +8,8 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.laws.dense_flow import inertial_number
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import U_X, Layers, V, _mean, _quotient, _sums
+from ryusa.measure.layers import Layers, layers_mean, layers_quotient
+from ryusa.measure.slices_in_layers import U_X, V, sums_in_layers
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
@@ -93,7 +94,7 @@ def plane_shear(run: Run, begin: float | None = None, end: float = math.inf) -> 
     forces = walls(run, begin, end)
     t, first, last, scene, area = window_of(run, begin, end, least=3)
     thickness = LAYER * scene.d_mean
-    sums, low = _sums(run, first, last, scene, 0.0, thickness, None, False)
+    sums, low = sums_in_layers(run, first, last, scene, 0.0, thickness, None, False)
     z = (low + np.arange(sums.shape[1]) + 0.5) * thickness
     normal = -forces.force[:, number, 2] * towards / area
     shear = -forces.force[:, number, 0] * along / area
@@ -104,8 +105,8 @@ def plane_shear(run: Run, begin: float | None = None, end: float = math.inf) -> 
         raise ResultsError(
             f"{int(core.sum())} layers of half a diameter in the core; {LEAST} or more are needed"
         )
-    v_x = _quotient("v_x", "m/s", along * sums[:, :, U_X], volume)
-    phi = _mean("phi", "-", volume / (area * thickness))
+    v_x = layers_quotient("v_x", "m/s", along * sums[:, :, U_X], volume)
+    phi = layers_mean("phi", "-", volume / (area * thickness))
     with np.errstate(invalid="ignore"):
         rates = -towards * np.polyfit(z[core], (along * sums[:, core, U_X] / volume[:, core]).T, 1)[0]
     rate, at_datum = (float(one) for one in np.polyfit(z[core], v_x.value[core], 1))

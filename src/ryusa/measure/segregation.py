@@ -7,7 +7,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import _frames
+from ryusa.measure.slices_in_layers import frames_of_grains
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model.scene import Bools
@@ -76,7 +76,7 @@ def segregation(
     for grains that fill a depth h evenly the scale is h/2. Centres are weighted with volume. The height is
     that along z, normal to a bed.
     """
-    t, first, last, scene, since = _frames(run, begin, end)
+    t, first, last, scene, since = frames_of_grains(run, begin, end)
     d = scene.d
     low, high = float(d.min()), float(d.max())
     cut = 0.5 * (low + high) if cut is None else cut

@@ -8,7 +8,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
-from ryusa.measure.profiles import Layers, _quotient
+from ryusa.measure.layers import Layers, layers_quotient
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -115,7 +115,7 @@ def shear_zone(run: Run, begin: float | None = None, end: float = math.inf) -> S
     n_ring = int(np.flatnonzero(sums[:, 0, 1].sum(axis=0) > 0.0).max()) + 1
     above, below = sums[:, :, 0, :n_ring] / rate, sums[:, :, 1, :n_ring]
     r = np.asarray((np.arange(n_ring) + 0.5) * (RING * d), dtype=np.float64)
-    turning = _quotient("turning", "-", above[:, 0], below[:, 0])
+    turning = layers_quotient("turning", "-", above[:, 0], below[:, 0])
     best = _fit(r, above[:, 0], below[:, 0], r_s, d)
     if not (np.isfinite(best).all() and best[2] > FAINTEST):
         raise ResultsError(

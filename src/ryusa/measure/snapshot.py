@@ -13,9 +13,8 @@ from ryusa.model.wall_shape import in_world, lines_of, outlines_of, within_perio
 from ryusa.printed import ByShape
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
-SHARE = (
-    0.99  # of the values that a colour scale covers: a few fast grains would leave the others in one colour
-)
+# Share of the values that a colour scale covers: a few fast grains would leave the others in one colour.
+SHARE = 0.99
 WIDEST = 600.0  # diameters of the largest grain, up to which a picture is widened to show the dams of a row
 ROOMY = 1.5  # sizes of what grains take up, up to which the walls around them are shown whole
 DRY = 1.0e-6  # depth up to which a segment of a row is dry [m]

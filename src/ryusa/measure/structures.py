@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import side_planes
+from ryusa.measure.bed_area import side_planes
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.walls import forces_of_frames
 from ryusa.measure.water_on_faces import areas, in_pieces, water_line, water_on_triangles

@@ -9,19 +9,11 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.laws.water import tau_star_from_u_star
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
+from ryusa.measure.bed_area import area_of
 from ryusa.measure.formulae import predicted
-from ryusa.measure.profiles import (
-    CHUNK,
-    U_X,
-    Layers,
-    Profiles,
-    _cut,
-    _mean,
-    _quotient,
-    _sums,
-    area_of,
-    profiles,
-)
+from ryusa.measure.layers import Layers, layers_mean, layers_quotient
+from ryusa.measure.profiles import Profiles, profiles
+from ryusa.measure.slices_in_layers import CHUNK, U_X, cut_by_layers, sums_in_layers
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import Average, average, begin_in_words, ratio, standard_errors
 from ryusa.measure.table import Averaged, Averages
@@ -148,7 +140,7 @@ def transport(
     ball, dt = scene.solid_volume, np.diff(t)
     ever = _moved(run, last, ball) / area
     moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
-    sums, edge = _sums(run, first, last, scene, 0.0, thickness, None, False)
+    sums, edge = sums_in_layers(run, first, last, scene, 0.0, thickness, None, False)
     carried = sums[:, :, U_X] / area
     d, g = scene.d_mean, float(np.linalg.norm(scene.gravity))
     rho_s = float(scene.m.sum() / ball.sum())
@@ -166,7 +158,7 @@ def transport(
         q_star=moved / dt / scale,
         z=(edge + np.arange(sums.shape[1]) + 0.5) * thickness,
         thickness=thickness,
-        flux=_mean("flux", "m/s", carried / thickness),
+        flux=layers_mean("flux", "m/s", carried / thickness),
         scale=scale,
         excess=excess,
         tau_star=tau_star,
@@ -225,7 +217,7 @@ def kinetic_stress(
         carried = np.concatenate([v, v**2, v[:, :, :1] * v[:, :, 2:]], axis=2)
         part = sums[a - first : span.stop - first]
         every = np.ones(z.shape, dtype=np.bool_)
-        _cut(z, r, np.ones(len(r)), every, carried, bottom, thickness, part)
+        cut_by_layers(z, r, np.ones(len(r)), every, carried, bottom, thickness, part)
     volume, once = sums[:, :, 0], sums[:, :, 2:5]
     weight = volume.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -248,7 +240,9 @@ def kinetic_stress(
     }
     return KineticStress(
         profiles=found,
-        temperature=_quotient("temperature", "m2/s2", trace / (2.0 if scene.plane_case else 3.0), volume),
+        temperature=layers_quotient(
+            "temperature", "m2/s2", trace / (2.0 if scene.plane_case else 3.0), volume
+        ),
         **stress,
     )
 

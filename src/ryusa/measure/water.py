@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.laws.transport import tau_star_from_stress
 from ryusa.measure._run import Floats, Run, settle_time
-from ryusa.measure.profiles import Layers, Profiles, profiles
+from ryusa.measure.layers import Layers, layers_mean
+from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.snapshot import scene_at
-from ryusa.measure.statistics import average, begin_in_words, standard_errors
+from ryusa.measure.statistics import average, begin_in_words
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 
@@ -122,10 +123,10 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
         t=found.t[span],
         z=found.z,
         faces=found.faces,
-        u=_mean("u", "m/s", found.u[span]),
-        phi=_mean("phi", "-", found.phi[span]),
-        tau=_mean("tau", "Pa", found.tau[span]),
-        nu_t=_mean("nu_t", "m2/s", found.nu_t[span]),
+        u=layers_mean("u", "m/s", found.u[span]),
+        phi=layers_mean("phi", "-", found.phi[span]),
+        tau=layers_mean("tau", "Pa", found.tau[span]),
+        nu_t=layers_mean("nu_t", "m2/s", found.nu_t[span]),
         grains=profiles(run, begin, end, LAYER),
         bed=bed,
         surface=float(surfaces.mean()),
@@ -206,10 +207,6 @@ def _averages(
             suggested,
         ),
     )
-
-
-def _mean(name: str, unit: str, frames: Floats) -> Layers:
-    return Layers(name, unit, frames.mean(axis=0), standard_errors(frames))
 
 
 def averaged_over_grain(phi: Floats, cells: float) -> Floats:

@@ -56,9 +56,8 @@ class Column(Flow):
     mixing: Mixing = Mixing.LAMINAR
     kappa: float = 0.41  # von Karman's constant [-]; ln(10)/5.75 = 0.40045 goes with Eq. (9)
     phi_max: float = 0.61  # of LI_SAWAMOTO [-]
-    k_f: float = (
-        0.0  # coefficient of turbulence in the pores of a debris flow [-]; 0: none, 0.16 in the source
-    )
+    # Coefficient of turbulence in the pores of a debris flow [-]; 0: none, 0.16 in the source
+    k_f: float = 0.0
     d: float = NAN  # diameter of the grains [m], for k_f and for averaging phi in LI_SAWAMOTO
     fluctuations: Fluctuations = Fluctuations.NONE
     seed: int = 0  # of the random walk

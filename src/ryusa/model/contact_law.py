@@ -49,9 +49,8 @@ def elastic_spheres(
     (False, 0.12221, 0.857)
     """
     stiff = hertz.hertz_stiffness(hertz.effective_modulus(youngs_modulus, poisson_ratio), r)
-    k_n = collision.stiffness_for_time(
-        hertz.contact_time_hertz(speed, m, stiff, 0.0, True), m, 0.0, True
-    )  # without damping
+    # Without damping
+    k_n = collision.stiffness_for_time(hertz.contact_time_hertz(speed, m, stiff, 0.0, True), m, 0.0, True)
     tension = damping_law == DampingLaw.TSUJI
     e_s = restitution if restitution_shear is None else restitution_shear
     return ContactLaw(

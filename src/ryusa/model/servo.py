@@ -21,7 +21,7 @@ def motion_with(walls: Walls, travel: Floats, speed: Floats, t: float) -> Floats
 
     Parameters
     ----------
-    travel : way of each wall along the direction of its servo up to t [m], shape (n_wall,).
+    travel : displacement of each wall along the direction of its servo up to t [m], shape (n_wall,).
     speed : along it from t on [m/s].
 
     Notes

@@ -26,9 +26,8 @@ class State(ByShape):
     omega: Floats  # spin [rad/s], shape (n_grain, 3); +y rolls downstream (the paper plots it negative)
     step: int = 0  # steps done since the start of the run
     t: float = 0.0  # time of x [s]
-    image: np.ndarray = field(
-        default_factory=lambda: np.zeros((0, 2), dtype=np.int32)
-    )  # periods crossed in x, y
+    # Periods crossed in x, y
+    image: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int32))
     contacts: Contacts = field(default_factory=Contacts.none)
     tally: Tally | None = None  # energy account and extremes so far; None before the first step
     fluid: FluidAtGrains | None = None  # water at every grain, if there is a water column

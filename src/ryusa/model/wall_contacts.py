@@ -185,9 +185,8 @@ def _seen(
             hidden = _near_point(scene, t, other, points[s]) <= near
             along = float(away[s] @ away[q])
             if not hidden and other >= scene.n_plane and distance[s] * along - distance[q] > SAME_PLACE * r:
-                at = centre - away[s] * (
-                    distance[q] / along
-                )  # where the way to it meets the plane of the face
+                # Where the way to it meets the plane of the face
+                at = centre - away[s] * (distance[q] / along)
                 hidden = _near_point(scene, t, other, at) <= SAME_PLACE * r
             if hidden:
                 seen[s] = False

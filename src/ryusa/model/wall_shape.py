@@ -38,7 +38,7 @@ def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
     return np.concatenate(corners), np.concatenate(owner)
 
 
-def lines_of(walls: Walls, sides: int = SIDES, *, rules: bool = True) -> tuple[Floats, Ints]:
+def lines_of(walls: Walls, *, rules: bool = True) -> tuple[Floats, Ints]:
     """Edges where a smooth surface ends, in the frames of the walls, (n, 2, 3) [m], and the wall of each.
 
     Rims of round faces, and by `rules` some lines along a cylinder, by which its turning is seen.
@@ -48,11 +48,11 @@ def lines_of(walls: Walls, sides: int = SIDES, *, rules: bool = True) -> tuple[F
     lines, owner = _edges(corners, walls.surface[flat], walls.wall[flat])
     found, owners = [lines], [owner]
     for f in np.flatnonzero(walls.kind != FaceKind.TRIANGLE):
-        low, high = _rings(walls.face[f], sides)
+        low, high = _rings(walls.face[f], SIDES)
         some = [np.stack([low[:-1], low[1:]], axis=1)]
         if walls.kind[f] == FaceKind.CYLINDER:
             some.append(np.stack([high[:-1], high[1:]], axis=1))
-            chosen = slice(0, sides if rules else 0, max(sides // _RULES, 1))
+            chosen = slice(0, SIDES if rules else 0, SIDES // _RULES)
             some.append(np.stack([low[chosen], high[chosen]], axis=1))
         found += some
         owners += [np.full(len(one), walls.wall[f]) for one in some]

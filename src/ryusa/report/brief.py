@@ -18,7 +18,7 @@ from ryusa.report.covered import conditions, not_covered, rests_on
 from ryusa.report.question import question_of
 from ryusa.results import Results
 from ryusa.results.label import run_label
-from ryusa.results.presentation import _saved
+from ryusa.results.presentation import saved
 from ryusa.running.resume import changes_of
 from ryusa.study.html import template
 from ryusa.version import __version__
@@ -139,5 +139,5 @@ def write_pdf(page: str, path: Path) -> int:
             raise ResultsError(f"{path}: {browser} did not print the page ({error})") from None
         if made.returncode:
             raise ResultsError(f"{path}: {browser} did not print the page ({made.stderr.strip()[-200:]})")
-    _saved(data, path)
+    saved(data, path)
     return len(re.findall(rb"/Type\s*/Page\b", data))

@@ -42,7 +42,7 @@ class Page:
 
     def save(self, path: str | Path) -> Path:
         """Write the page to a file and return its path."""
-        return _saved(self.text.encode("utf-8"), Path(path))
+        return saved(self.text.encode("utf-8"), Path(path))
 
     def __repr__(self) -> str:
         return f"Page({len(self.text) / 1e6:.1f} MB; .save('run.html') writes it)"
@@ -73,7 +73,7 @@ class FilmFile:
         path = Path(path)
         if path.suffix.lower() != f".{self.kind}":
             raise CaseError("path", str(path), f"must end in .{self.kind}; film(kind=...) makes another kind")
-        return _saved(self.data, path)
+        return saved(self.data, path)
 
     def __repr__(self) -> str:
         return f"FilmFile({self.kind}, {len(self.data) / 1e6:.1f} MB; .save('film.{self.kind}') writes it)"
@@ -85,7 +85,8 @@ class FilmFile:
         return f'<img src="data:image/{self.kind};base64,{held}" style="max-width: 100%">'
 
 
-def _saved(data: bytes, path: Path) -> Path:
+def saved(data: bytes, path: Path) -> Path:
+    """Write a page, a picture or a film, and its folder where there is none."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)

@@ -75,9 +75,8 @@ class RunArrays:
             )
         self.case = read_json(folder / schema.CASE_JSON, missing_ok=True)
         self.summary = read_json(folder / schema.SUMMARY, missing_ok=True)
-        self.scenes = read_scenes(
-            folder
-        )  # (step, t [s], Scene) at the start and after every change of the timeline
+        # (step, t [s], Scene) at the start and after every change of the timeline
+        self.scenes = read_scenes(folder)
         self.scene: Scene = self.scenes[0][2]  # at the start of the run
         self._parts = read_parts(folder, self.scene)
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
+from ryusa.laws.families import Adhesion, ContactForce
 from ryusa.model import ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.feeds import NONE, Arrivals, Traffic
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
@@ -18,15 +18,15 @@ from ryusa.model.walls import N_MOTION, N_RIGID, N_SERVO
 from ryusa.results.flow_file import FLOW_ARRAYS, ROW, flow_arrays, flow_from, flow_scalars, numbers_of
 from ryusa.results.hdf5 import opened, read_dataset
 
-_TRAFFIC, _MATERIALS = (
-    "traffic",
-    "materials",
-)  # left out where a scene has none: digests of earlier versions stay
+# Left out where a scene has none: digests of earlier versions stay.
+_TRAFFIC, _MATERIALS = "traffic", "materials"
 _BODIES = "bodies"
 _ARRIVALS = "arrivals"
 _OF_ARRIVALS = tuple(f.name for f in fields(Arrivals) if f.name != "feed")
 _OF_BODIES = tuple(f.name for f in fields(RigidBodies) if f.name != "names")
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water}
+# Fields that scenes of earlier versions had not: left out at their default, so that digests stay.
+_LATER = {"rolling": ("twisting",), "water": ("drag_of_form",)}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
@@ -70,14 +70,15 @@ def _scalars(scene: Scene) -> dict[str, Any]:
             found[f.name] = asdict(value) if law and value is not None else value
     if _MATERIALS in found:  # an array of its own
         del found[_MATERIALS]["of"]
-    for one in (found["rolling"], *found.get(_MATERIALS, {}).get("rolling", ())):
-        if not one["twisting"]:  # as before there was any: the digest stays
-            del one["twisting"]
-    if scene.water.drag_of_form == DragOfForm.SPHERE:
-        del found["water"]["drag_of_form"]
+    for law, names in _LATER.items():
+        default = {one.name: one.default for one in fields(_LAWS[law])}
+        for one in _each(found, law):
+            for name in names:
+                if one[name] == default[name]:
+                    del one[name]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
-    for one in (found["contact"], *found.get(_MATERIALS, {}).get("contact", ())):
+    for one in _each(found, "contact"):
         if one["adhesion"] == Adhesion.NONE:  # as before there was any
             for key in ONLY_ADHESIVE:
                 del one[key]
@@ -88,6 +89,11 @@ def _scalars(scene: Scene) -> dict[str, Any]:
         found[_TRAFFIC][_ARRIVALS] = arrivals["feed"]  # its arrays are datasets
     walls: Walls | None = found.pop("walls")
     return found if walls is None else found | {"walls": list(walls.names)}
+
+
+def _each(found: dict[str, Any], law: str) -> list[dict[str, Any]]:
+    """The law of a scene, and those of each two of its materials."""
+    return [found[law], *found.get(_MATERIALS, {}).get(law, ())]
 
 
 def _datasets_of(walls: Walls) -> tuple[str, ...]:

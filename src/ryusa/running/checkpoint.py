@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from ryusa.errors import CheckpointError, ResultsError
-from ryusa.model.rows import RowsInPieces
+from ryusa.model.pieces import RowsInPieces
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, read_dataset
 from ryusa.running.disk import sync, write_hdf5_behind_header

@@ -15,9 +15,8 @@ from ryusa.running.contact_forces import contact_forces
 from ryusa.water.protocol import Fluid
 
 _FIRST_ROOM = 16  # frames
-_MANY_CONTACTS = (
-    1000  # in a delivery, from which it is written as it is; a call of HDF5 takes as long as to copy these
-)
+# Contacts in a delivery, from which it is written as it is; a call of HDF5 takes as long as to copy these.
+_MANY_CONTACTS = 1000
 
 
 def bytes_per_frame(n_grain: int) -> int:

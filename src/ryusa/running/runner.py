@@ -195,7 +195,8 @@ def run_scene(
     frames : time between frames [s]; frame k falls on step round(k frames/dt).
     changes : changes of the scene during the run, in any order.
     forces : record contact forces with every frame, as record.forces of a case does.
-    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; a resume needs the others
+    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; a resume needs all of
+        the others as they were.
 
     Returns
     -------

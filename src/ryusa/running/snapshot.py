@@ -16,7 +16,7 @@ from ryusa.errors import CheckpointError
 from ryusa.model import BodyState, Contacts, EngineBlock, FluidAtGrains, FluidState, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import N_EVENT, N_STATE
-from ryusa.model.rows import RowsInPieces
+from ryusa.model.pieces import RowsInPieces
 from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
 from ryusa.running.checkpoint import CheckpointBlock

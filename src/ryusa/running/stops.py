@@ -14,9 +14,8 @@ from ryusa.model import Scene
 from ryusa.model.scene import EventRule
 
 _MOST_STEPS = 2**62
-HOP_RISE = (
-    0.1  # rise of the centre, in d, that a flight between two bed contacts must allow to be a saltation
-)
+# Rise of the centre, in d, that a flight between two bed contacts must allow to be a saltation.
+HOP_RISE = 0.1
 
 
 @dataclass(frozen=True)

@@ -23,9 +23,8 @@ _VERSION = np.array([2, 0], dtype=np.int64)  # the first version with time steps
 _CELLS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT = np.dtype(np.int64)
 _FLOAT = np.dtype(np.float64)
-SUBINDEX_PARTS = (
-    32  # parts in a sub-index; HDF5 uses 4 kB for each source of a virtual dataset until the file is closed
-)
+# Parts in a sub-index; HDF5 uses 4 kB for each source of a virtual dataset until the file is closed.
+SUBINDEX_PARTS = 32
 POINTS = "points.h5"  # in parts/: data that all frames share
 _PLANE_REACH = 50.0  # half the side, in largest d, of the square that is drawn for an unbounded plane
 

@@ -119,9 +119,8 @@ def carry_out(
     begun, progress = time.monotonic(), progress or StudyProgress()
     wanted = _wanted(tasks)
     where = where or Processes(jobs)
-    ahead = estimate_cost(
-        wanted, folder, jobs=where.jobs, again=again
-    )  # reads, and so checks, every case first
+    # Reads, and so checks, every case first
+    ahead = estimate_cost(wanted, folder, jobs=where.jobs, again=again)
     refuse_if_too_big(ahead, folder)
     found: dict[str, dict[Any, Any]] = {name: {} for name in tasks}
     results = TaskResults(found)

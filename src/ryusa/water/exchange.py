@@ -54,16 +54,6 @@ class Cells:
             raise ValueError(f"{self}: at least one cell")
 
     @property
-    def faces(self) -> Floats:
-        """Heights of the faces [m], shape (n + 1,)."""
-        return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
-
-    @property
-    def middles(self) -> Floats:
-        """Heights of the middles [m], shape (n,)."""
-        return self.z_low + (np.arange(self.n, dtype=np.float64) + 0.5) * self.dz
-
-    @property
     def volume(self) -> float:
         """Of one cell [m3]."""
         return self.area * self.dz
@@ -119,21 +109,6 @@ class Slices:
     @cached_property
     def _of_submerged(self) -> tuple[Floats, Floats]:
         return factors_in_water(self.whole, self.submerged)
-
-
-@dataclass(frozen=True)
-class CellTotals:
-    """Amounts that the grains gave, in the unit of the amounts.
-
-    Attributes
-    ----------
-    cells : received by each cell, shape (n,), or (n, m) for m quantities.
-    below, above : parts outside the column, shape () or (m,). The three add up to the total of the grains.
-    """
-
-    cells: Floats
-    below: Floats
-    above: Floats
 
 
 def slices(
@@ -217,26 +192,6 @@ def weighted_concentration(grains: Slices, values: Floats) -> Floats:
     sums, _ = _give(grains, table, np.ones(grains.n_grain), np.zeros(grains.n_grain))
     sums /= grains.cells.volume
     return sums[0] if flat else np.ascontiguousarray(sums.T)
-
-
-def to_cells(grains: Slices, amounts: Floats, share: Share = "whole") -> CellTotals:
-    """Distribute amounts of grains over the cells in which they lie.
-
-    Parameters
-    ----------
-    grains : slices.
-    amounts : of each grain (an impulse [N s], a force [N], a volume [m3]), shape (n_grain,) or (n_grain, m).
-    share : "whole", a cell receives the fraction V_ik/V_i, and the part of a grain outside the cells goes to
-        no cell; "submerged", it receives V_ik over the submerged volume, and a grain that lies in any cell
-        gives everything to cells.
-    """
-    table, flat = _table(amounts, grains.n_grain, "grain")
-    sums, outside = _give(grains, table, *grains.factors(share))
-    return (
-        CellTotals(sums[0], outside[0, 0], outside[0, 1])
-        if flat
-        else CellTotals(np.ascontiguousarray(sums.T), outside[:, 0].copy(), outside[:, 1].copy())
-    )
 
 
 def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:

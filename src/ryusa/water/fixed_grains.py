@@ -18,10 +18,8 @@ from ryusa.water.steady import steady
 
 numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
 DRAG_STEP = 1.0e-4  # relative change of the slip speed in the numerical derivative of the drag
-TOLERANCE, MAX_ITERATIONS = (
-    1.0e-9,
-    400,
-)  # relative change of the speed at which the initial state is steady; iterations
+# Relative change of the speed at which the initial state is steady; iterations.
+TOLERANCE, MAX_ITERATIONS = 1.0e-9, 400
 
 
 class FixedGrainForces(NamedTuple):

@@ -32,12 +32,10 @@ def submerged_part(cut: Slices, z: Floats, d: Floats, surface: float) -> Slices:
     out = np.flatnonzero(z + 0.5 * d > surface)
     if not len(out):
         return cut
-    count, volume, submerged, above = (
-        cut.count.copy(),
-        cut.volume.copy(),
-        cut.submerged.copy(),
-        cut.above.copy(),
-    )
+    count = cut.count.copy()
+    volume = cut.volume.copy()
+    submerged = cut.submerged.copy()
+    above = cut.above.copy()
     cells = cut.cells
     cut_at_surface(
         out, z, 0.5 * d, cells.z_low, cells.dz, surface, cut.first, count, volume, submerged, above

@@ -22,9 +22,8 @@ NO_WALLS = int(SideWalls.NONE)
 TOLERANCE = 1.0e-13  # relative change of the speed at which Newton's method stops
 ROUND_OFF = 1.0e-9  # relative change accepted where the next is no smaller: limit of round-off
 MAX_ITERATIONS = 300
-DAMPED_AFTER = (
-    30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
-)
+# Iterations after which only half of a change is taken: the wall's two layers meet in a kink.
+DAMPED_AFTER = 30
 DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CONVERGED = range(5)
 # scalars that a step writes, beside its profiles
 SURFACE, GRADIENT, ITERATIONS = range(3)

@@ -123,9 +123,8 @@ class DebrisFlow:
         shear = self._weight(above) * height - self._friction(local) * above * height
         f = np.array([self.factor(float(one)) for one in local])
         rate = np.sqrt(np.maximum(shear, 0.0) / (self.rho_w * f)) / self.d
-        down = cumulative_trapezoid(
-            rate, height, initial=0.0
-        )  # speed that is lost from the surface downwards
+        # Speed that is lost from the surface downwards
+        down = cumulative_trapezoid(rate, height, initial=0.0)
         return self.depth - height[::-1], local[::-1], (down[-1] - down)[::-1]
 
     def _weight(self, above: Floats) -> Floats:

@@ -8,11 +8,8 @@ import numpy as np
 
 from ryusa.measure.statistics import Floats
 
-STRETCHES = (
-    10.0,
-    3.0,
-    30.0,
-)  # ways along the bed, in diameters, over which heights are compared; first judged
+# Ways along the bed, in diameters, over which heights are compared; first judged.
+STRETCHES = 10.0, 3.0, 30.0
 STEP = 1.0  # way between two places of a path, in diameters
 
 

@@ -30,9 +30,8 @@ DESIGN = Design(
         _drops.choice(RESTITUTION, "0.7", "0.6", "0.8"),
     )
 )
-OFF = (
-    0.05  # restitution off by more is abnormal: half of what the paper's 0.6 to 0.8 for sand leaves about 0.7
-)
+# Restitution off by more is abnormal: half of what the paper's 0.6 to 0.8 for sand leaves about 0.7
+OFF = 0.05
 NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from that of the case")
 ABNORMAL = Band(OFF, math.inf, "-", f"abnormal rebound: e off by more than {OFF:g} in some contact")
 

@@ -29,11 +29,8 @@ from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "Collapse of a column"
 GRAINS = (1800, 3600, 7200)  # aspect ratios of about 0.5, 1 and 2
-RADIUS, RELEASED, SECTORS = (
-    0.025,
-    0.3,
-    12,
-)  # of the tube [m], of the case file [s]; in which the foot is sought
+# Of the tube [m], of the case file [s]; in which the foot is sought.
+RADIUS, RELEASED, SECTORS = 0.025, 0.3, 12
 # a control that must fail: grains that hardly slide or roll
 ROUGH = {"contact.friction": "5", "rolling.coefficient": "2"}
 

@@ -29,10 +29,8 @@ from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "A granular gas cools"
 E, PHI = 0.9, 0.02
-WIDE, HIGH = (
-    7,
-    50,
-)  # of the first lattice, 2450 grains; the box is periodic along and across, floor and lid stop z
+# Of the first lattice, 2450 grains; the box is periodic along and across, floor and lid stop z.
+WIDE, HIGH = 7, 50
 D, SPEED = 1.0e-3, 0.1  # [m]; root of T_0/m [m/s]
 OVERLAP = 0.01  # over d, of a grain at 2 SPEED
 STEPS = 10.0  # in a contact, whose restitution is exact

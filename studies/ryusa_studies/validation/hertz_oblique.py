@@ -45,12 +45,8 @@ SMALL, FAST, MU_5, E_5 = 1.0e-5, 5.0, 0.3, 1.0
 LARGE, SLOW, MU_6, E_6 = 0.1, 0.2, 0.4, 0.5
 SLIDES_5, SLIDES_6 = 5.0, 0.95  # theta from which, and q up to which, test 5 and 6 slide throughout
 SLIDES = 6.0  # ours, found at the first run: from 5.8
-MIDDLE, BRISK, MU_T, SLIDES_T = (
-    0.025,
-    0.5,
-    0.1,
-    7.0,
-)  # of Thornton et al.: radius, normal speed, friction, as above
+# Of Thornton et al.: radius, normal speed, friction, as above
+MIDDLE, BRISK, MU_T, SLIDES_T = 0.025, 0.5, 0.1, 7.0
 READ = "a few times the accuracy of reading"
 ARM = "1/400, and an overlap of up to 0.035 of the radius, which shortens the arm"
 FINE = "1/400, and the error of the first step"

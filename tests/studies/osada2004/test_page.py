@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 from PIL import Image, ImageChops
 
-from ryusa.cli.study import print_counts
+from ryusa.cli.many_runs import print_counts
 from ryusa.errors import ResultsError
 from ryusa.running import disk
 from ryusa.study import Level, Outcome, Plan, html, page

@@ -20,9 +20,8 @@ ENOUGH = 1000.0  # points that the weighted ones are worth, from which no furthe
 LEAST = 100.0  # below it the points are too few for a result
 WIDER = 1.5  # standard deviations of a proposal over those found so far
 PRIOR_SHARE = 0.2  # of the points that a proposal takes from the prior
-UNDETERMINED = (
-    0.8  # standard deviation of the posterior over that of the prior, from which nothing was learnt
-)
+# Standard deviation of the posterior over that of the prior, from which nothing was learnt.
+UNDETERMINED = 0.8
 ONE_SIGMA, TWO_SIGMA = 0.6827, 0.95
 
 

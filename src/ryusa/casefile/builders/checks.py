@@ -91,7 +91,7 @@ def check_builder(case: Case) -> Iterator[CaseError]:
     if isinstance(build, BoxSection):
         yield from _box(case, build)
     if isinstance(build, PackingSection | FlumeSection) and graded(case):
-        yield from _bed(case, build)
+        yield from _bed(case)
     if isinstance(build, FillSection):
         yield from _fill(case, build)
 
@@ -217,7 +217,7 @@ def _waves(case: Case, build: FlumeSection) -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _bed(case: Case, build: PackingSection | FlumeSection) -> Iterator[CaseError]:
+def _bed(case: Case) -> Iterator[CaseError]:
     """Find a sieve curve whose finest grains fall through the bed of fixed grains."""
     finest, opening = sizes(case)[1], bed_opening(case)
     if finest > opening or any(plane.normal[2] > 0.0 for plane in case.planes):

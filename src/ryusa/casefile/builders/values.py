@@ -293,11 +293,9 @@ def stream_count(case: Case) -> int:
 
 def _cells_of_a_grain(case: Case, name: str | None) -> float:
     """Cells of the largest grain that a grain of a material takes in the mean [-]."""
-    halved, widest, grading = (
-        4.0 if case.motion.plane else 8.0,
-        sizes(case)[2],
-        grading_of(sized_as(case, name)),
-    )
+    halved = 4.0 if case.motion.plane else 8.0
+    widest = sizes(case)[2]
+    grading = grading_of(sized_as(case, name))
     if grading is None:  # each as its largest
         level = math.floor(math.log2(widest / drawn_range(case, name)[1]) + 1.0e-9)
         return halved ** -min(level, DEEPEST)

@@ -198,10 +198,8 @@ def _contradictions(
     known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
     falls = keys.drive == "slope" and case.motion.gravity > 0.0
     estimated = water.depth is not None and depth != water.depth
-    asked, along = (
-        u_star_given(case),
-        case.motion.gravity * math.sin(slope_at_last(case.motion, case.timeline)),
-    )
+    asked = u_star_given(case)
+    along = case.motion.gravity * math.sin(slope_at_last(case.motion, case.timeline))
     if estimated and falls and along > 0.0 and asked > 0.0:  # the top of a loose bed is known to half a grain
         fits = asked**2 / along
         if water.depth is not None and abs(fits - water.depth) <= AGREE * water.depth:

@@ -78,10 +78,8 @@ def _overlap(case: Case, derived: Derived, rest: float) -> ExplainRow:
     elif most > high:
         verdict, flag = f"may rise above the stable range {low:g} to {high:g}; see overlap/d of a run", "note"
     elif most < low:
-        verdict, flag = (
-            f"below the range {low:g} to {high:g}; a smaller {stiff} would allow a longer step",
-            "note",
-        )
+        verdict = f"below the range {low:g} to {high:g}; a smaller {stiff} would allow a longer step"
+        flag = "note"
     shown = f"{most:.3g}" if least == most else f"{least:.2g} to {most:.2g}"
     return ExplainRow("impact", "largest overlap/d", most, "", shown, f"{origin}: {verdict}", flag)
 

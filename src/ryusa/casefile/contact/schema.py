@@ -5,18 +5,23 @@ from typing import Annotated, Any
 from pydantic import Discriminator, Field, Tag
 
 from ryusa.casefile.quantities import (
+    AdhesionDensity,
     Dashpot,
     Duration,
-    EnergyDensity,
     Force,
     FrictionAngle,
     FrictionCoefficient,
     Number,
-    Pressure,
+    PoissonRatio,
+    PullOffForce,
+    Restitution,
+    RollingCoefficient,
     Speed,
+    SpringStiffness,
     Stiffness,
-    SurfaceEnergy,
     WordOf,
+    WorkOfAdhesion,
+    YoungsModulus,
 )
 from ryusa.casefile.section import Section
 from ryusa.laws import families
@@ -66,7 +71,7 @@ class ContactSection(Section):
     """Springs: linear ones of constant stiffness, or those of elastic spheres after Hertz and Mindlin."""
     stiffness: (
         Annotated[
-            Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
+            Annotated[SpringStiffness, Tag("<value>")]
             | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
             | Annotated[TimeStiffnessSection, Tag("<time>")],
             Discriminator(_stiffness_kind),
@@ -78,17 +83,17 @@ class ContactSection(Section):
     """k_s over k_n; 2/7 when neither this nor shear_stiffness is given."""
     shear_stiffness: Annotated[Stiffness, Field(ge=0, le=1.0e15)] | None = None
     """Tangential stiffness k_s, instead of shear_ratio."""
-    youngs_modulus: Annotated[Pressure, Field(ge=1.0, le=1.0e15)] | None = None
+    youngs_modulus: YoungsModulus | None = None
     """Young's modulus E of elastic spheres; walls and fixed grains are of the same material,
     unless [materials] says otherwise."""
-    poisson_ratio: Annotated[Number, Field(ge=0, le=0.5)] = 0.25
+    poisson_ratio: PoissonRatio = 0.25
     """Poisson's ratio of elastic spheres."""
     expected_speed: Annotated[Speed, Field(gt=0)] | None = None
     """Impact speed to be expected: the contact time of elastic spheres, and with it the time step, is that at
     this speed. When not given it follows from the builder, as `ryusa check` shows."""
-    restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
+    restitution: Restitution | None = None
     """Normal coefficient of restitution e, the same on fixed grains and between free grains."""
-    restitution_shear: Annotated[Number, Field(gt=0, le=1)] | None = None
+    restitution_shear: Restitution | None = None
     """Tangential coefficient of restitution e_s; equal to restitution when not given."""
     damping: Annotated[Dashpot, Field(ge=0, le=1.0e12)] | None = None
     """Constant normal dashpot eta_n, instead of restitution."""
@@ -104,12 +109,12 @@ class ContactSection(Section):
     """Attraction of grains in touch, along the normal of their contact: none, a constant pull-off force, that
     of Derjaguin, Muller & Toporov, or one in proportion to the contact area of elastic spheres. Contacts
     begin and end at overlap 0. Friction sees the push that carries load and attraction."""
-    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    pull_off_force: PullOffForce | None = None
     """Pull-off force of every pair with adhesion = "constant": what parts two grains at rest."""
-    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    work_of_adhesion: WorkOfAdhesion | None = None
     """Work of adhesion w with adhesion = "DMT", twice the surface energy of the material: the pull-off force
     is 2 pi w R_e, R_e the reduced radius of the pair, half the radius of two equal grains."""
-    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    adhesion_density: AdhesionDensity | None = None
     """Energy density with adhesion = "contact area", the attraction per contact area pi R_e x, x the overlap;
     half of it is the cohesion energy density of LIGGGHTS' sjkr."""
     slip: Annotated[str, WordOf(families.Slip)] = "total"
@@ -141,7 +146,7 @@ class RollingSection(Section):
     arm: Annotated[str, WordOf(families.Arm)] | None = None
     """Length that the coefficient multiplies; "contact width", as in Eq. (13), when not given. The
     spring-dashpot-slider always takes "reduced radius"."""
-    coefficient: Annotated[Number, Field(ge=0)] = 0.0
+    coefficient: RollingCoefficient = 0.0
     """f' of Eq. (13) with the contact width, or mu_r with the reduced radius."""
     stiffness_factor: Annotated[Number, Field(gt=0)] = 2.25
     """Rolling stiffness over k_n times lever arm squared; only for spring-dashpot-slider."""

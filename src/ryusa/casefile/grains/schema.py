@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic_core import InitErrorDetails
 
 from ryusa.casefile.files import RelativePath
-from ryusa.casefile.quantities import Boolean, Density, Length, Number, Ratio
+from ryusa.casefile.quantities import Boolean, GrainDensity, Length, Number, Ratio
 from ryusa.casefile.section import Section
 from ryusa.model.clump import MOST_SPHERES
 from ryusa.model.filling import LEAST_FILLED
@@ -52,7 +52,7 @@ class GrainsSection(Section):
     diameter: GrainLength | None = None
     """Mean diameter d, needed without a sieve_curve; with a table of grains or a sieve_curve, the reference
     diameter of u_star, roughness, overlap/d and fixed grains, in a sieve_curve D50 when not given."""
-    density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
+    density: GrainDensity
     """Density of the grain material, rho_s."""
     buoyant: Boolean = False
     """true: grains may be lighter than the water, and rise, as pumice does."""

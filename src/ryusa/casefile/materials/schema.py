@@ -1,20 +1,18 @@
 """Keys of [materials.NAME] and [[pairs]]."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from ryusa.casefile.grains.schema import CurvePoints, GrainLength, Spread
 from ryusa.casefile.quantities import (
-    Density,
-    EnergyDensity,
-    Force,
+    AdhesionDensity,
     FrictionAngle,
     FrictionCoefficient,
-    Number,
-    Pressure,
-    Stiffness,
-    SurfaceEnergy,
+    GrainDensity,
+    PoissonRatio,
+    PullOffForce,
+    Restitution,
+    RollingCoefficient,
+    SpringStiffness,
+    WorkOfAdhesion,
+    YoungsModulus,
 )
 from ryusa.casefile.section import Section
 
@@ -22,7 +20,7 @@ from ryusa.casefile.section import Section
 class MaterialSection(Section):
     """A material of grains or walls; what it does not say is as in [grains], [contact] and [rolling]."""
 
-    density: Annotated[Density, Field(ge=1.0, le=1.0e6)] | None = None
+    density: GrainDensity | None = None
     """Density of grains of this material; of walls and fixed grains it means nothing."""
     diameter: GrainLength | None = None
     """Mean diameter of the grains of this material that feeds bring and grains.mixture lays; of walls and
@@ -32,26 +30,26 @@ class MaterialSection(Section):
     sieve_curve: CurvePoints | None = None
     """Their sizes by mass, in place of diameter and spread: pairs of diameter and percent finer, from 0 to
     100."""
-    stiffness: Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)] | None = None
+    stiffness: SpringStiffness | None = None
     """Normal stiffness k_n of the linear spring between two grains of this material. Two materials give way
     as springs in series: 2/(1/k_a + 1/k_b)."""
-    youngs_modulus: Annotated[Pressure, Field(ge=1.0, le=1.0e15)] | None = None
+    youngs_modulus: YoungsModulus | None = None
     """Young's modulus of elastic spheres; two materials combine as Hertz and Mindlin have it."""
-    poisson_ratio: Annotated[Number, Field(ge=0, le=0.5)] | None = None
+    poisson_ratio: PoissonRatio | None = None
     """Poisson's ratio of elastic spheres."""
     friction_angle: FrictionAngle | None = None
     """Friction angle between two grains of this material."""
     friction: FrictionCoefficient | None = None
     """Friction coefficient between two grains of this material, instead of friction_angle."""
-    restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
+    restitution: Restitution | None = None
     """Normal coefficient of restitution between two grains of this material."""
-    rolling_coefficient: Annotated[Number, Field(ge=0)] | None = None
+    rolling_coefficient: RollingCoefficient | None = None
     """rolling.coefficient between two grains of this material."""
-    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    pull_off_force: PullOffForce | None = None
     """contact.pull_off_force between two grains of this material."""
-    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    work_of_adhesion: WorkOfAdhesion | None = None
     """contact.work_of_adhesion between two grains of this material."""
-    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    adhesion_density: AdhesionDensity | None = None
     """contact.adhesion_density between two grains of this material."""
 
 
@@ -68,13 +66,13 @@ class PairSection(Section):
     """Friction angle of the pair."""
     friction: FrictionCoefficient | None = None
     """Friction coefficient of the pair, instead of friction_angle."""
-    restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
+    restitution: Restitution | None = None
     """Normal coefficient of restitution of the pair."""
-    rolling_coefficient: Annotated[Number, Field(ge=0)] | None = None
+    rolling_coefficient: RollingCoefficient | None = None
     """rolling.coefficient of the pair."""
-    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    pull_off_force: PullOffForce | None = None
     """contact.pull_off_force of the pair."""
-    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    work_of_adhesion: WorkOfAdhesion | None = None
     """contact.work_of_adhesion of the pair."""
-    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    adhesion_density: AdhesionDensity | None = None
     """contact.adhesion_density of the pair."""

@@ -20,8 +20,15 @@ from ryusa.laws.families import Adhesion
 from ryusa.laws.materials import poisson_of_two, stiffness_of_two, young_of_two
 
 GRAINS = "grains"  # the material of [grains] and [contact]
-_OF_PAIRS = ("friction", "restitution", "rolling_coefficient")
-OF_ADHESION = Adhesion.all_takes()  # of pairs too, where the case has adhesion
+OF_ADHESION = Adhesion.all_takes()  # keys of pairs where the case has adhesion
+# Keys that belong to a pair and not to its materials: section and name of the one that holds for "grains".
+OF_PAIRS = {
+    "friction": ("contact", "friction"),
+    "restitution": ("contact", "restitution"),
+    "rolling_coefficient": ("rolling", "coefficient"),
+    **{key: ("contact", key) for key in OF_ADHESION},
+}
+SAID_ALSO = {"friction": ("friction", "friction_angle")}  # keys that give one of them
 
 
 def names_of(materials: dict[str, MaterialSection]) -> tuple[str, ...]:
@@ -74,27 +81,25 @@ def case_of_pair(case: Case, a: str, b: str) -> Case:
     """
     if not case.materials:
         return case
-    contact = case.contact
     k_a, k_b = _stiffness(case, a), _stiffness(case, b)
     e_a, e_b = _young(case.contact, case.materials, a), _young(case.contact, case.materials, b)
     nu_a, nu_b = _poisson(case.contact, case.materials, a), _poisson(case.contact, case.materials, b)
-    values = {key: _of_pair(case, a, b, key) for key in keys_of_pairs(case.contact)}
-    changed: dict[str, Any] = {
-        "friction": values["friction"], "friction_angle": None, "restitution": values["restitution"],
-        **{key: values[key] for key in adhesion(case.contact).takes},
-    }  # fmt: skip
+    changed: dict[str, dict[str, Any]] = {"contact": {"friction_angle": None}, "rolling": {}}
+    for key in keys_of_pairs(case.contact):
+        section, name = OF_PAIRS[key]
+        changed[section][name] = _of_pair(case, a, b, key)
     if is_hertz(case.contact):
-        changed["youngs_modulus"] = young_of_two(e_a, nu_a, e_b, nu_b)
-        changed["poisson_ratio"] = poisson_of_two(e_a, nu_a, e_b, nu_b)
+        changed["contact"]["youngs_modulus"] = young_of_two(e_a, nu_a, e_b, nu_b)
+        changed["contact"]["poisson_ratio"] = poisson_of_two(e_a, nu_a, e_b, nu_b)
     else:
-        changed["stiffness"] = stiffness_of_two(k_a, k_b)
+        changed["contact"]["stiffness"] = stiffness_of_two(k_a, k_b)
     added = 0.0 if case.water is None else case.water.density * case.water.added_mass
     heavy_a, heavy_b = density(case, a) + added, density(case, b) + added
     mean = density(case, a) if heavy_a == heavy_b else 2.0 * heavy_a * heavy_b / (heavy_a + heavy_b) - added
     return case.model_copy(
         update={
-            "contact": contact.model_copy(update=changed),
-            "rolling": case.rolling.model_copy(update={"coefficient": values["rolling_coefficient"]}),
+            "contact": case.contact.model_copy(update=changed["contact"]),
+            "rolling": case.rolling.model_copy(update=changed["rolling"]),
             "grains": case.grains.model_copy(update={"density": mean, "mixture": {}, "bed_material": None}),
             "materials": {},
             "pairs": (),
@@ -103,8 +108,8 @@ def case_of_pair(case: Case, a: str, b: str) -> Case:
 
 
 def keys_of_pairs(contact: ContactSection) -> tuple[str, ...]:
-    """Keys that belong to a pair and not to its materials."""
-    return (*_OF_PAIRS, *adhesion(contact).takes)
+    """Those of `OF_PAIRS` that act in a case."""
+    return tuple(key for key in OF_PAIRS if key not in OF_ADHESION or key in adhesion(contact).takes)
 
 
 def lightest_of(case: Case, a: str, b: str, free: bool) -> Case:
@@ -166,10 +171,9 @@ def value_of(case: Case, name: str, key: str) -> float:
         return own
     if key == "friction":
         return friction(case.contact)
-    if key in OF_ADHESION:
-        value: float | None = getattr(case.contact, key)
-        return value or 0.0
-    return case.rolling.coefficient if key == "rolling_coefficient" else case.contact.restitution or math.nan
+    section, leaf = OF_PAIRS[key]
+    value: float | None = getattr(getattr(case, section), leaf)
+    return value or (math.nan if key == "restitution" else 0.0)
 
 
 def _of_pair(case: Case, a: str, b: str, key: str) -> float:

@@ -14,9 +14,8 @@ from ryusa.laws.families import ContactTiming
 
 STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
 STEPS_LOSSLESS = 16.0  # with exact timing at restitution 1, where nothing takes what steps give (design/0014)
-STEPS_OF_HERTZ = (
-    25.0  # per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018)
-)
+# Steps per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018).
+STEPS_OF_HERTZ = 25.0
 TANGENTIAL_SHARE = 0.2  # of the largest stable step of the tangential motion, when the case gives no step
 MOST_STEPS = 500.0  # per contact when the case gives no step; a case that needs more has to say so
 STEPS_PER_FILM = 5.0  # in the time in which the thinnest film stops a grain, when the case gives no step

@@ -52,7 +52,7 @@ def check_walls(case: Case) -> Iterator[CaseError]:
         names.append(wall.name)
         yield from _shape(key, wall)
         yield from _motion(case, key, wall)
-        yield from check_servo(case, wall, key)
+        yield from check_servo(wall, key)
     for k, entry in enumerate(case.timeline):
         if entry.move is not None:
             name, at = entry.move.wall, f"timeline.{k}.move.wall"
@@ -160,7 +160,7 @@ def _out_of_reach(case: Case, wall: WallSection, key: str, low: Floats, high: Fl
 _ALONG = 1e-9  # sine of the angle up to which two directions are one
 
 
-def check_servo(case: Case, wall: WallSection, key: str) -> Iterator[CaseError]:
+def check_servo(wall: WallSection, key: str) -> Iterator[CaseError]:
     """Find servos that press nothing, or that contradict the wall; `key` is that of the wall."""
     servo = wall.servo
     if servo is None:

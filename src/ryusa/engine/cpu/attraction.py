@@ -34,7 +34,7 @@ def attract(
     candidates: CandidateArrays,
     batch: Any,
 ) -> None:
-    """Add the attraction of the first m lanes to their forces, and what a step gains from it to the books.
+    """Add the attraction of the first m lanes to their forces, and what a step gains from it to the account.
 
     The overlap of the step before is taken from the closing speed, to third order in the step.
     """

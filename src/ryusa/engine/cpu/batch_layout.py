@@ -7,9 +7,8 @@ read them as constants. A loop reads all four of a group or none: else it would 
 """
 
 LANES = 32  # pairs in a batch, a power of two
-PITCH = (
-    LANES + 8
-)  # between rows: with a power of two all rows would fall into the same few places of the cache
+# Doubles between rows: with a power of two all rows would fall into the same few places of the cache.
+PITCH = LANES + 8
 
 # Groups of four:
 SEPARATION = 0  # from i to j, and both radii together [m]
@@ -24,7 +23,7 @@ TORQUE_J = 32 * PITCH
 # Rows:
 WAS_TOUCHING = 36 * PITCH  # state of the pair: 1 where they touched in the last step
 EXCESS = 37 * PITCH  # overlap less the largest so far for its size [m]
-# Books [J], summed lane by lane until the block is done:
+# Energy account [J], summed lane by lane until the block is done:
 WORK = 38 * PITCH
 DASH_N, DASH_S, SLIDE, RELEASED_N, RELEASED_S, STEP = (WORK + k * PITCH for k in range(6))
 N_WORK = 6
@@ -76,12 +75,10 @@ MASS_E, ETA_N_E, K_N_E, WAY_E, AFTER_E = (EVENT + k * PITCH for k in range(4, 9)
 MASS_S_E, K_S_E, ETA_S_E = (EVENT + k * PITCH for k in range(9, 12))
 SPRING_E, SHEAR_E, SLIP_E = EVENT + 12 * PITCH, EVENT + 15 * PITCH, EVENT + 18 * PITCH  # three rows each
 # in their place the answers
-PUSH_E, SPENT_E, SLID_E, WHEN_E = (
-    EVENT + 26 * PITCH,
-    EVENT + 29 * PITCH,
-    EVENT + 31 * PITCH,
-    EVENT + 32 * PITCH,
-)
+PUSH_E = EVENT + 26 * PITCH
+SPENT_E = EVENT + 29 * PITCH
+SLID_E = EVENT + 31 * PITCH
+WHEN_E = EVENT + 32 * PITCH
 LAW_E = EVENT + 33 * PITCH  # stiffnesses and friction, three rows, where materials differ
 SIDEWAYS = EVENT + 36 * PITCH  # a group of four: shift of i times its mass, and nothing [kg m]
 WHEN = EVENT + 40 * PITCH  # of a pair: time of touch or release after the step [s]
@@ -89,7 +86,7 @@ WHEN = EVENT + 40 * PITCH  # of a pair: time of touch or release after the step 
 MU = 121 * PITCH  # friction of the pair [-]
 MINDLIN = 122 * PITCH  # tangential stiffness of elastic spheres over K sqrt(overlap) [-]
 # Only in scenes with walls:
-SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its books held before [J]
+SHARE = 126 * PITCH  # of its force that a contact with a face has [-], and what its account held before [J]
 KEPT = 127 * PITCH
 PUSH = 133 * PITCH  # tangential impulse of an event on i, three rows [N s]
 BEND = 136 * PITCH  # rate at which the closing speed of free grains falls as they pass each other [m/s2]

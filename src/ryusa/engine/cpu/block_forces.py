@@ -24,7 +24,7 @@ from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
 from ryusa.engine.cpu.wall_contacts import resolve_walls
 from ryusa.engine.cpu.wall_motion import add_drift, book_walls
-from ryusa.engine.cpu.wall_shares import keep_books, share_of, take_shares
+from ryusa.engine.cpu.wall_shares import account_of_shares, share_of, take_shares
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -126,14 +126,12 @@ def make_block_forces(kind: ForcesKind) -> Any:
         reach_on = c[P.FILM_REACH] if film else 0.0
         # arrays are passed one by one: references to a tuple of them would be counted for every batch
         x, v, w, f, ids = grains.x, grains.v, grains.w, pairs.f, grains.ids
-        i_of, j_of, to, touching, eta, rows = (
-            candidates.i,
-            candidates.j,
-            candidates.target,
-            candidates.touching,
-            candidates.eta,
-            candidates.rows,
-        )
+        i_of = candidates.i
+        j_of = candidates.j
+        to = candidates.target
+        touching = candidates.touching
+        eta = candidates.eta
+        rows = candidates.rows
         mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
         met, slot, face_lanes, impulse = candidates.met, candidates.slot, work.face_lanes, accounts.walls[b]
         spring_r = given = pending = 0.0
@@ -170,7 +168,7 @@ def make_block_forces(kind: ForcesKind) -> Any:
             )  # fmt: skip
             if walled:
                 add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
-                keep_books(face_lanes, selected, slot, met, batch)
+                account_of_shares(face_lanes, selected, slot, met, batch)
             if rebound and not exact:
                 immersed_dashpots(choice, m, selected, c, material, table, grains, candidates, batch)
             compute(choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)

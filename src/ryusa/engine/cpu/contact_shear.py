@@ -23,7 +23,7 @@ from ryusa.engine.cpu.pair_physics import make_records_between
 from ryusa.engine.cpu.simd.vec4 import add4, fill4, subtract4
 from ryusa.engine.cpu.wall_contacts import resolve_walls
 from ryusa.engine.cpu.wall_motion import add_drift, book_walls
-from ryusa.engine.cpu.wall_shares import keep_books, leave_to_shares, take_shares
+from ryusa.engine.cpu.wall_shares import account_of_shares, leave_to_shares, take_shares
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -176,7 +176,7 @@ def _make_impulses(plane: bool) -> Any:
 def _scatter(
     m: int, selected: Any, i_of: Any, target: Any, batch: Any, f: Any, shifts: Any, stats: Any
 ) -> None:
-    """Add the first m lanes to their grains and their books, one by one in the order of the list.
+    """Add the first m lanes to their grains and to the account, one by one in the order of the list.
 
     Pairs that only might have touched have no part in it: which of them there are depends on the list.
     """
@@ -225,12 +225,10 @@ def make_contact_shear(kind: ForcesKind) -> Any:
             candidates.rows,
         )  # fmt: skip
         mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
-        met, slot, face_lanes, impulse = (
-            candidates.met,
-            candidates.slot,
-            work.face_lanes,
-            held.accounts.walls[b],
-        )
+        met = candidates.met
+        slot = candidates.slot
+        face_lanes = work.face_lanes
+        impulse = held.accounts.walls[b]
         rules = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
         given = pending = 0.0
         fill4(f, 8 * (n + b), 0.0)  # those of fixed grains and planes, not used
@@ -264,7 +262,7 @@ def make_contact_shear(kind: ForcesKind) -> Any:
             _gather_shears(m, lanes, selected, j_of, n_solid, eta, batch)
             if walled:
                 add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
-                keep_books(face_lanes, selected, slot, met, batch)
+                account_of_shares(face_lanes, selected, slot, met, batch)
             shears(lanes, choice.tension != 0, rules, c, batch)
             if walled:
                 leave_to_shares(b, face_lanes, selected, candidates, met, batch)

@@ -56,7 +56,7 @@ from ryusa.errors import RunError
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
-from ryusa.model.rows import RowsInPieces
+from ryusa.model.pieces import RowsInPieces
 from ryusa.model.scene import EventRule, Floats
 from ryusa.model.state import make_read_only
 from ryusa.model.walls import N_IMPULSE

@@ -269,10 +269,8 @@ def make_forces_in_column(laws: FluidLaws, bodies: bool) -> Any:
 def make_forces_in_profile(laws: FluidLaws, bodies: bool) -> Any:
     """As `make_forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
     drag, torque, above = laws.drag, laws.torque, laws.above
-    profile_lanes, torque_lanes = (
-        _lanes(Profile(laws.profile), _OF_PROFILE),
-        _lanes(WaterTorque(torque), _OF_TORQUE),
-    )
+    profile_lanes = _lanes(Profile(laws.profile), _OF_PROFILE)
+    torque_lanes = _lanes(WaterTorque(torque), _OF_TORQUE)
     formed, drag_lanes = _drag_lanes(laws, bodies)
 
     @inner(fastmath=FAST)

@@ -20,7 +20,7 @@ B_FILM = int(Term.FILM)
 
 @inner(fastmath=FAST, forceinline=True)
 def begin_fluid_work(batch: Any) -> None:
-    """Empty the books of a block."""
+    """Set the work of the water on a block to zero."""
     for place in range(W.WORK, W.SIZE):
         batch[place] = 0.0
 
@@ -93,7 +93,7 @@ def _total(batch: Any, at: int) -> float:
 
 @inner(fastmath=FAST)
 def end_fluid_work(batch: Any, account: Any, stats: Any) -> None:
-    """Add the books of a block to its account."""
+    """Add the work of the water on a block to its account."""
     account[B_DRAG] += _total(batch, W.DRAG_WORK)
     account[B_LIFT] += _total(batch, W.LIFT_WORK)
     account[B_FLOW] += _total(batch, W.FLOW_WORK)

@@ -93,14 +93,12 @@ def make_integrate(kind: MotionKind) -> Any:
         held, work = taken(held), taken(work)
         c, grains, pairs, batch = held.c, held.grains, held.pairs, work.water
         account, stats = held.accounts.terms[b], held.accounts.stats[b]
-        x, v, w, v_pruned, ids, image = (
-            grains.x,
-            grains.v,
-            grains.w,
-            grains.v_pruned,
-            grains.ids,
-            grains.image,
-        )
+        x = grains.x
+        v = grains.v
+        w = grains.w
+        v_pruned = grains.v_pruned
+        ids = grains.ids
+        image = grains.image
         m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
         per_m, per_inertia = grains.per_m, grains.per_inertia
         f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start

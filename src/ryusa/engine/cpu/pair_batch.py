@@ -4,9 +4,9 @@ Every formula is a law. Choices are made by picking one of two numbers, never by
 are read at places known at compile time: that lets the compiler turn the loops of `compute` into vector
 instructions (batch_layout.py).
 
-Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the
-work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2. A spring met
-or left within a step is booked for what the half interval takes beyond what it held (design/0005).
+The account is kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n
+give the work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2. A
+spring met or left within a step is booked for what the half interval takes beyond what it held (design/0005).
 """
 # ruff: noqa: E741  (l is a lane)
 

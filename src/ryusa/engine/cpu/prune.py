@@ -106,12 +106,10 @@ def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidat
 
     In place of these stand the numbers of the pairs in the Verlet list.
     """
-    first, rows, crossing, wanted = (
-        pairs.cross_start[b],
-        n + len(candidates.count),
-        pairs.crossing,
-        pairs.active,
-    )
+    first = pairs.cross_start[b]
+    rows = n + len(candidates.count)
+    crossing = pairs.crossing
+    wanted = pairs.active
     last = pairs.cross_start[b + 1]
     for row in range(rows + first, rows + last):
         wanted[row] = 0

@@ -15,7 +15,7 @@ from ryusa.engine.cpu.verlet_list import room_for_memory
 from ryusa.engine.shared.contact_memory import ContactMemory, contacts_of
 from ryusa.engine.shared.variant import KernelVariant
 from ryusa.model import Contacts
-from ryusa.model.rows import RowsInPieces
+from ryusa.model.pieces import RowsInPieces
 from ryusa.model.scene import Floats
 
 _AT_ONCE = 1 << 13  # grains or candidate pairs

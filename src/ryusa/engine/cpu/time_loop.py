@@ -63,10 +63,8 @@ class PiecesOfStep:
         # all are made before the first is compiled, so that it is known what is left (compiled/waiting.py)
         self._prune = make_prune(bool(variant.walls))
         self._move_bodies = make_move_bodies(moving) if variant.bodies else None
-        takes, kind = (
-            (integer, integer, integer, number, number, flag, number, *lent),
-            forces_kind(variant, choice),
-        )
+        takes = (integer, integer, integer, number, number, flag, number, *lent)
+        kind = forces_kind(variant, choice)
         self.forces = Wanted(make_block_forces, (kind,), takes)
         wanted = [self.forces, Wanted(make_integrate, (moving,), self._moves)]
         self.shear = None

@@ -170,10 +170,10 @@ class BlockLayout(Layout):
         """
         n, scene, period, blocks, grains = self.n, self.scene, self.period, self.block_start, found.grains
         reach = skin + film_reach(scene)
-        bed = np.ascontiguousarray(self.x_fixed[self.standing])
-        d = 2.0 * grains.x[n + self.standing, 3]
-        fixed = grids_by_size(bed, d, self.standing, reach, period, *bounds_of(bed), self.largest)
-        fixed = fixed._replace(order=self.standing[fixed.order])
+        bed = np.ascontiguousarray(self.x_fixed[self.active_fixed])
+        d = 2.0 * grains.x[n + self.active_fixed, 3]
+        fixed = grids_by_size(bed, d, self.active_fixed, reach, period, *bounds_of(bed), self.largest)
+        fixed = fixed._replace(order=self.active_fixed[fixed.order])
         start = zeros(np.int32, n + 1)
 
         def list_some(first: int, last: int) -> tuple[int, np.ndarray]:

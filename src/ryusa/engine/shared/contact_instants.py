@@ -189,9 +189,8 @@ def touch(
         math.sqrt(w_x * w_x + w_y * w_y + w_z * w_z),
     )
     slides = size >= SLIDES * strength
-    of_limit = (
-        m * (ahead - rate) / f_n if total else m * before / k_n
-    )  # of the limit, by the normal force or its spring
+    # Rate of the limit, by the normal force or its spring.
+    of_limit = m * (ahead - rate) / f_n if total else m * before / k_n
     of_limit *= strength / (m_t * size) if slides and size > 0.0 else 0.0
     of_spring, whole = 0.0 if slides else before_s * soft, slides and total
     over = 1.0 if slides and (total or drop) else 1.0 / left_s

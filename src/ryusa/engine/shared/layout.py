@@ -42,7 +42,7 @@ class Layout:
         self.x_fixed = np.array(scene.x_fixed, dtype=np.float64).reshape(-1, 3)
         for k in np.flatnonzero(np.isfinite(self.period)):
             self.x_fixed[:, k] %= self.period[k]
-        self.standing = np.flatnonzero(scene.fixed_active).astype(np.int32)
+        self.active_fixed = np.flatnonzero(scene.fixed_active).astype(np.int32)
 
     # Arrays by id are made when they are asked for: an engine keeps its own, in its own order.
 

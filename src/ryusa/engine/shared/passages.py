@@ -88,7 +88,7 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
         image[ids] = 0
     bodies = state.bodies
     if bodies is not None:
-        bodies = with_bodies(scene, bodies, split(scene, ids)[1], None)
+        bodies = with_bodies(bodies, split(scene, ids)[1], None)
     state = replace(
         state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, engine=None,
         present=everywhere(state) & ~leaves, bodies=bodies,
@@ -110,7 +110,7 @@ def placed(scene: Scene, state: State, grains: Entering) -> State:
         made = of >= 0
         some = scene.bodies.some(of[made], scene.bodies.first[of[made]])
         put = BodyState.of(some, *(one[made] for one in (grains.x, grains.v, grains.q, grains.omega)))
-        bodies = with_bodies(scene, bodies, of[made], put)
+        bodies = with_bodies(bodies, of[made], put)
         x[some.members], v[some.members], omega[some.members] = put.of_members(some)
     image = state.image.copy() if len(state.image) else np.zeros((scene.n_grain, 2), dtype=np.int32)
     image[ids] = 0

@@ -80,7 +80,7 @@ def half_step_on_bodies(scene: Scene, state: State, which: Ints, force: Floats, 
     return 0.5 * scene.dt * float(np.sum(push * moved.v) + np.sum(turn * w))
 
 
-def with_bodies(scene: Scene, moved: BodyState, which: Ints, put: BodyState | None) -> BodyState:
+def with_bodies(moved: BodyState, which: Ints, put: BodyState | None) -> BodyState:
     """Motion of all clumps with that of some changed; nan where they are taken out (`put` is None)."""
     found = {name: getattr(moved, name).copy() for name in ("x", "v", "q", "momentum", "image")}
     for name, array in found.items():

@@ -27,9 +27,8 @@ from ryusa.laws.rolling import (
 from ryusa.model.tally import Term
 
 Vector = tuple[float, float, float]
-Body = tuple[
-    float, float, float, float
-]  # radius, mass with added mass, inertia, contacts that share the inertia
+# Radius, mass with added mass, inertia, contacts that share the inertia
+Body = tuple[float, float, float, float]
 
 NONE, PRINTED, CONSTANT, EPSD, LIMITED = numbers(
     __name__, Rolling.NONE, Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD, Rolling.LIMITED
