@@ -12,6 +12,7 @@ from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
+from ryusa.measure.flow_field import FlowField, flow_field
 from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.front import Front, front
 from ryusa.measure.layers import Layers
@@ -60,6 +61,7 @@ __all__ = [
     "DynamicAngle",
     "Energy",
     "Entrainment",
+    "FlowField",
     "FormulaCurve",
     "Front",
     "HeapSurface",
@@ -102,6 +104,7 @@ __all__ = [
     "energy",
     "entrainment",
     "farthest",
+    "flow_field",
     "front",
     "grouping",
     "kinetic_stress",
