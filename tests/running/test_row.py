@@ -145,6 +145,13 @@ def test_a_run_with_air_below_its_nappe_is_resumed_with_the_same_bits_on_any_num
     over, behind = found.passed[-1, found.row.dams[0].end :][:2]
     assert over > 0.003 and over - behind > 0.5e-3  # a part of it lands farther downstream
     assert water_energy(whole).residual < 1e-12
+    (nappe,) = long_section(whole).nappes
+    dam, x, z = found.row.dams[0], *nappe.outline.T
+    face = found.row.x_low + dam.end * found.row.dx
+    assert nappe.segment == dam.end - 1 and (x[0], z[0]) == pytest.approx((face, 0.04))
+    assert x[-1] == pytest.approx(face) and z[-1] == pytest.approx(found.surface[-1, dam.end - 1])
+    assert 0.05 < x.max() - face < 0.3 and z.min() < 0.04
+    assert not long_section(whole, 0.0).nappes  # at rest
     stop_at(17)
     run(tmp_path / "run", text, air, threads=2)
     assert run(tmp_path / "run", text, air, resume=True, threads=2).complete
