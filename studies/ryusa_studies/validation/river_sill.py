@@ -6,9 +6,24 @@ third of the jet's depth.
 """
 
 import math
+from collections.abc import Sequence
 
-from ryusa.study import at_most
+import numpy as np
 
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import Pressure, SurfaceRule
+from ryusa.model.arrays import Floats
+from ryusa.model.column import Column
+from ryusa.model.row import ColumnRow, EndKind, RowDam, RowEnd, RowState
+from ryusa.study import Finding, Found, Source, Task, at_most, calculation, comparison, misfit
+from ryusa.water.row import RowArrays, advance_row, row_at_rest
+
+G = 9.80665
+DX, DZ = 0.01, 0.005
+PLATE = 0.08  # height of plate and drop [m]
+HEAD = 0.06  # about that over the plate [m]
+TIME = 15.0  # [s]
+X = Axis("distance behind the crest", "m")
 DISCHARGE = at_most(0.03, "3 % of Rehbock's formula, for a plate within the row")
 LANDING = at_most(0.05, "5 % of the way from the plate to where the middle of the measured nappe lands")
 POOL = at_most(0.20, "20 % of the depth that Rand 1955 measured below the nappe of a drop")
@@ -53,3 +68,115 @@ def drop_of_rand(q: float, high: float, g: float) -> tuple[float, float, float]:
     """
     number = q * q / (g * high**3)
     return 1.00 * number**0.22 * high, 0.54 * number**0.425 * high, 4.30 * number**0.27 * high
+
+
+def of_dam(crest: int, high: float, head: float, dz: float, *, aerated: bool) -> tuple[ColumnRow, RowState]:
+    """A row of 1 m before a dam of so many segments and 0.8 m behind it, without friction, at rest."""
+    before, behind = round(1.0 / DX), round(0.8 / DX)
+    n, q = before + crest + behind, 0.5 * math.sqrt(G) * head**1.5
+    at = np.arange(n)
+    solid = np.where((at >= before) & (at < before + crest), round(high / dz), 0)
+    column = Column(
+        z_low=0.0, dz=dz, n=round(0.2 / dz), depth=high + head, nu=1e-15, surface=SurfaceRule.VOLUME
+    )
+    row = ColumnRow(
+        column, DX, np.zeros(n), G, RowEnd(EndKind.DISCHARGE, discharge=q), RowEnd(EndKind.FREE_FALL),
+        solid=solid, pressure=Pressure.FULL, x_low=-(before + (0.5 if crest == 1 else crest)) * DX,
+        dams=(RowDam("dam", before, before + crest, high, False, aerated),),
+    )  # fmt: skip
+    deep = np.where(at < before, high + head, np.where(solid > 0, high + 0.7 * head, 0.25 * high))
+    return row, row_at_rest(row, deep)
+
+
+def falling(crest: int, dz: float = DZ, aerated: bool = True) -> dict[str, Floats]:
+    """Steady flow over a dam of so many segments: surface, landing place, discharge over a plate.
+
+    x counts from the middle of a plate of one segment, where a thin one would stand, or from the downstream
+    face. `lands` is the mean place of what lands, and `pool` the surface there.
+    """
+    row, now = of_dam(crest, PLATE, HEAD, dz, aerated=aerated)
+    arrays, q = RowArrays.of(row), 0.5 * math.sqrt(G) * HEAD**1.5
+    now = advance_row(row, now, TIME - 2.0, arrays=arrays)
+    surface, landed = np.zeros((2, row.n_segment))
+    for _ in range(20):
+        now = advance_row(row, now, 0.1, arrays=arrays)
+        surface += now.surface[row.inner] / 20.0
+        if arrays.nappe is not None:
+            landed += np.delete(arrays.nappe.lands, arrays.nappe.air)[row.inner] * row.dx / 20.0
+    x, over = row.x, float(surface[row.dams[0].first - 25]) - PLATE
+    energy = over + (q / (over + PLATE)) ** 2 / (2.0 * G)
+    rehbock = 2.0 / 3.0 * math.sqrt(2.0) * (0.602 + 0.083 * over / PLATE) * ((over + 0.0011) / energy) ** 1.5
+    whole = max(float(landed.sum()), 1e-12)
+    lands = float(landed @ x) / whole
+    return {
+        "x": x, "surface": surface, "landed": landed, "lands": np.array(lands),
+        "pool": np.array(landed @ surface / whole), "c": np.array(q / (math.sqrt(G) * energy**1.5)),
+        "rehbock": np.array(rehbock), "head": np.array(energy), "q": np.array(q),
+        "velocity_head": np.array(energy - over),
+    }  # fmt: skip
+
+
+def _plate() -> Task:
+    return calculation(falling, crest=1, seconds=20.0)
+
+
+def _clings() -> Task:
+    return calculation(falling, crest=1, aerated=False, seconds=20.0)
+
+
+def _drop() -> Task:
+    return calculation(falling, crest=60, dz=0.0025, seconds=80.0)
+
+
+def tasks() -> Sequence[Task]:
+    """Two minutes."""
+    return [_plate(), _clings(), _drop()]
+
+
+def judge(found: Found) -> Sequence[Finding]:
+    """Plate and drop within a row, beside what was measured."""
+    return [_of_plate(found), _of_drop(found)]
+
+
+def _of_plate(found: Found) -> Finding:
+    own, clings = found[_plate()], found[_clings()]
+    c, rehbock, lands, pool = (float(own[name]) for name in ("c", "rehbock", "lands", "pool"))
+    head, velocity_head = float(own["head"]), float(own["velocity_head"])
+    fall = np.linspace(0.0, PLATE - pool, 20)
+    middle = np.array([reach_of_nappe(float(one), head, velocity_head) for one in fall])
+    return comparison(
+        "sill", "A thin plate within a row, with air below its nappe",
+        Source("Rehbock 1929; middle of the nappe by Blaisdell 1954"), X, Axis("surface", "m"),
+        [Curve("air behind it", own["x"], own["surface"]), Curve("clinging", clings["x"], clings["surface"])],
+        [Curve("middle of the measured nappe", middle, PLATE - fall)],
+        [
+            misfit("q/(sqrt(g) H^1.5) over that of Rehbock, off by", abs(c / rehbock - 1.0), "-", DISCHARGE),
+            misfit("way to where it lands, off by", abs(lands / float(middle[-1]) - 1.0), "-", LANDING),
+        ],
+        {
+            "plate": "8 cm high", "head": f"{100.0 * head:.2f} cm", "it lands": f"{100.0 * lands:.2f} cm",
+            "q/(sqrt(g) H^1.5)": f"{c:.3f}, clinging {float(clings['c']):.3f}, Rehbock {rehbock:.3f}",
+        },
+    )  # fmt: skip
+
+
+def _of_drop(found: Found) -> Finding:
+    own = found[_drop()]
+    x, surface, lands, q = own["x"], own["surface"], float(own["lands"]), float(own["q"])
+    pool, jet, length = drop_of_rand(q, PLATE, G)
+    beneath = float(surface[(x > 0.0) & (x < 0.5 * lands)].mean())
+    behind = float(surface[(x > length) & (x < length + 2.0 * PLATE)].mean())
+    return comparison(
+        "drop", "Pool and jet behind a drop with air below its nappe",
+        Source("Rand 1955: 1.00 D^0.22 and 0.54 D^0.425 of its height, D = q^2/(g P^3)"), X,
+        Axis("surface", "m"), [Curve("row", x, surface)],
+        [
+            Curve("pool, measured", np.array([0.0, 0.5 * lands]), np.full(2, pool)),
+            Curve("jet, measured", np.array([length, length + 2.0 * PLATE]), np.full(2, jet)),
+        ],
+        [
+            misfit("depth of the pool below the nappe, off by", abs(beneath / pool - 1.0), "-", POOL),
+            misfit("depth of the jet behind it, off by", abs(behind / jet - 1.0), "-", JET),
+        ],
+        {"drop": "8 cm", "drop number": f"{q * q / (G * PLATE**3):.3g}", "it lands": f"{100 * lands:.1f} cm"},
+    )  # fmt: skip
