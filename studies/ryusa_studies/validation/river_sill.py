@@ -138,6 +138,12 @@ def judge(found: Found) -> Sequence[Finding]:
     return [_of_plate(found), _of_drop(found)]
 
 
+def _near(name: str, run: dict[str, Floats]) -> Curve:
+    """The surface near the crest."""
+    near = np.abs(run["x"]) < 0.4
+    return Curve(name, run["x"][near], run["surface"][near])
+
+
 def _of_plate(found: Found) -> Finding:
     own, clings = found[_plate()], found[_clings()]
     c, rehbock, lands, pool = (float(own[name]) for name in ("c", "rehbock", "lands", "pool"))
@@ -147,7 +153,7 @@ def _of_plate(found: Found) -> Finding:
     return comparison(
         "sill", "A thin plate within a row, with air below its nappe",
         Source("Rehbock 1929; middle of the nappe by Blaisdell 1954"), X, Axis("surface", "m"),
-        [Curve("air behind it", own["x"], own["surface"]), Curve("clinging", clings["x"], clings["surface"])],
+        [_near("air behind it", own), _near("clinging", clings)],
         [Curve("middle of the measured nappe", middle, PLATE - fall)],
         [
             misfit("q/(sqrt(g) H^1.5) over that of Rehbock, off by", abs(c / rehbock - 1.0), "-", DISCHARGE),
@@ -169,7 +175,7 @@ def _of_drop(found: Found) -> Finding:
     return comparison(
         "drop", "Pool and jet behind a drop with air below its nappe",
         Source("Rand 1955: 1.00 D^0.22 and 0.54 D^0.425 of its height, D = q^2/(g P^3)"), X,
-        Axis("surface", "m"), [Curve("row", x, surface)],
+        Axis("surface", "m"), [_near("row", own)],
         [
             Curve("pool, measured", np.array([0.0, 0.5 * lands]), np.full(2, pool)),
             Curve("jet, measured", np.array([length, length + 2.0 * PLATE]), np.full(2, jet)),
