@@ -91,6 +91,52 @@ def test_check_says_how_the_head_over_a_crest_differs_in_a_row(end, said):
     assert said in row.origin
 
 
+AIR = {"water.row.pressure": "full", "water.row.dams.0.aerated": "true"}
+
+
+def test_check_says_where_a_nappe_with_air_below_it_lands(river):
+    """By 1.4 times the speed of critical flow, from the middle of the nappe to the floor."""
+    case, q = river(**AIR), 0.03
+    depth = 0.715 * shown(case, "critical depth")
+    plan = build(case).scene.row
+    assert plan is not None and plan.dams[0].aerated
+    fall = plan.dams[0].crest + 0.5 * depth - plan.bottom[plan.dams[0].end]
+    g = 9.80665 * math.cos(math.atan(1 / 200))
+    assert shown(case, "nappe of 'weir' lands") == pytest.approx(q / depth * math.sqrt(2.0 * fall / g))
+    assert not any("nappe" in one.name for one in explain(river(**{"water.row.pressure": "full"})))
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"water.row.pressure": "hydrostatic"}, 'needs water.row.pressure = "full"'),
+        ({"water.row.dams.0.concentration": "0.5"}, "lets water through"),
+        ({"water.row.dams.0.end": "4 m"}, "end = 'free fall' has air behind it"),
+        ({"water.row.dams.0.end": "3.9 m"}, "beyond the end of the row, 0.1 m behind it: lengthen the row"),
+        (
+            {
+                "water.row.upstream": None,
+                "water.row.downstream": None,
+                "water.row.bottom": "[['0 m', '0 m'], ['4 m', '0 m']]",
+            },
+            "has no place in a periodic row",
+        ),
+        (
+            {
+                "water.row.dams": "[{ name = 'a', begin = '3 m', end = '3.2 m', crest = '2 cm', aerated = "
+                "true }, { name = 'b', begin = '3.2 m', end = '3.4 m', crest = '2 cm' }]"
+            },
+            "has no effect before dam 'b', which is as high",
+        ),
+    ],
+)
+def test_a_dam_behind_which_no_air_can_lie_is_refused(river, more, says):
+    with pytest.raises(CaseError) as caught:
+        river(**(AIR | more))
+    lines = [one.line for one in (caught.value, *caught.value.others) if ".aerated" in one.line]
+    assert any(says in line for line in lines), lines
+
+
 def test_frames_fall_on_steps_and_the_step_keeps_the_courant_number(river):
     found = derive(river())
     assert 0.1 / found.dt == pytest.approx(round(0.1 / found.dt), abs=1e-9)

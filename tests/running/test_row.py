@@ -128,6 +128,36 @@ def test_a_run_with_a_pressure_of_its_own_keeps_it_and_is_resumed_with_the_same_
         table_of_frame(whole, -1)
 
 
+def test_a_run_with_air_below_its_nappe_is_resumed_with_the_same_bits_on_any_number_of_threads(
+    tmp_path: Path, stop_at: Any
+) -> None:
+    air = {"water.row.pressure": "full", "water.row.dams.0.aerated": "true", "stop.time": "0.5 s",
+           "water.row.bottom": "[['0 m', '0 cm'], ['2.5 m', '0 cm']]", "water.row.segments": "50",
+           "water.row.surface":
+               "[['0 m', '8 cm'], ['1.8 m', '8 cm'], ['1.8 m', '2 cm'], ['2.5 m', '2 cm']]"}  # fmt: skip
+    text = WEIR.replace('depth = "5 cm"', "")
+    whole = run(tmp_path / "whole", text, air, threads=1)
+    found = whole.row
+    assert found is not None
+    assert whole.scene.row.dams[0].aerated and found.u.shape[1:] == (51, found.row.column.n)
+    held = found.volume.sum(axis=1) * found.row.dx
+    assert np.abs(held - held[0] - (found.passed[:, 0] - found.passed[:, -1])).max() < 1e-14
+    over, behind = found.passed[-1, found.row.dams[0].end :][:2]
+    assert over > 0.003 and over - behind > 0.5e-3  # a part of it lands farther downstream
+    assert water_energy(whole).residual < 1e-12
+    (nappe,) = long_section(whole).nappes
+    dam, x, z = found.row.dams[0], *nappe.outline.T
+    face = found.row.x_low + dam.end * found.row.dx
+    assert nappe.segment == dam.end - 1 and (x[0], z[0]) == pytest.approx((face, 0.04))
+    assert x[-1] == pytest.approx(face) and z[-1] == pytest.approx(found.surface[-1, dam.end - 1])
+    assert 0.05 < x.max() - face < 0.3 and z.min() < 0.04
+    assert not long_section(whole, 0.0).nappes  # at rest
+    stop_at(17)
+    run(tmp_path / "run", text, air, threads=2)
+    assert run(tmp_path / "run", text, air, resume=True, threads=2).complete
+    assert differences(whole.folder, tmp_path / "run") == []
+
+
 def test_the_energy_account_of_the_water_closes(weir: Results) -> None:
     found = water_energy(weir)
     assert len(found.t) == 31 and len(found.rows()) == 31

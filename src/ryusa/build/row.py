@@ -150,7 +150,7 @@ def _dams(case: Case, plan: RowPlan) -> tuple[np.ndarray | None, PorousSolid | N
     for dam in keys.dams:
         (first, end), crest = dam_span(plan, dam), crest_of(plan, dam)
         over = (crest - plan.bottom[first:end]) / plan.cell
-        dams.append(RowDam(dam.name, first, end, crest, dam.concentration is not None))
+        dams.append(RowDam(dam.name, first, end, crest, dam.concentration is not None, dam.aerated))
         if dam.concentration is None:
             solid[first:end] = np.round(over).astype(np.int64)
             continue

@@ -1,5 +1,6 @@
 """A row of columns: its long section, and what varies over distance and time."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -150,7 +151,9 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
     axes.fill_between(edge, ground, low - 0.12 * span, color=style.BED, lw=0.0)
     wet = surface > floor  # a dry dam has its surface on its crest
     sides = np.column_stack([x - 0.5 * step, x + 0.5 * step])
-    along, under, top = _over_segments(sides, wet, wet[1:] & wet[:-1], x, bottom, surface)
+    joined = wet[1:] & wet[:-1]
+    joined[[one.segment for one in found.nappes]] = False
+    along, under, top = _over_segments(sides, wet, joined, x, bottom, surface)
     axes.fill_between(along, under, top, color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if found.grains and (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
@@ -163,6 +166,10 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
         _dam(axes, name, first, end, x, step, bottom, floor)
     axes.plot(edge, ground, color="#5a4a2f", lw=0.9)
     axes.plot(along, top, color=WATER, lw=1.2, label="surface")
+    for one in found.nappes:
+        at, z = one.outline.T
+        high = (z * math.cos(found.slope) - at * math.sin(found.slope)) * scale
+        axes.fill(at, high, facecolor=(WATER, 0.22), edgecolor=WATER, lw=0.9)
     axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     if found.pressure_head is not None:
         head = np.where(wet, found.elevation(found.pressure_head) * scale, np.nan)

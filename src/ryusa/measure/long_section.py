@@ -12,6 +12,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Run
 from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.inclined import fall_of, gravity_at, pull_of
+from ryusa.measure.nappe import Nappe, nappes_of
 from ryusa.measure.statistics import standard_errors
 from ryusa.measure.table import lines
 from ryusa.measure.water import HALF, averaged_over_grain, height_reached
@@ -70,6 +71,7 @@ class LongSection(ByShape):
     window : begin and end of the means [s]; None for one moment.
     error : standard errors of the means by name, in their unit; empty for one moment.
     grains : whether there are free grains.
+    nappes : water in the air behind aerated dams.
 
     Notes
     -----
@@ -105,6 +107,7 @@ class LongSection(ByShape):
     error: dict[str, Floats] = field(default_factory=dict[str, Floats])
     grains: bool = False
     pressure_head: Floats | None = None
+    nappes: tuple[Nappe, ...] = ()
 
     def elevation(self, z: Floats) -> Floats:
         """Vertical height of points at the heights z normal to the x axis [m]; 0 at the origin."""
@@ -207,6 +210,7 @@ def _section(run: Run, found: WaterFrames, frames: Ints, bed: Bed) -> LongSectio
         error=errors,
         grains=bool(run.scene.n_grain),
         pressure_head=means.get("pressure_head"),
+        nappes=nappes_of(found, frames, means["surface"], g_x, g_z),
     )
 
 

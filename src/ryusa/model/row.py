@@ -85,6 +85,7 @@ class RowDam:
     end: int  # segment after the last
     crest: float  # height over the x axis [m]
     porous: bool = False
+    aerated: bool = False  # air lies below the nappe behind it
 
 
 @dataclass(frozen=True, repr=False)
@@ -194,17 +195,13 @@ class ColumnRow(Flow):
 
     def fields(self) -> dict[str, Field]:
         """What a run folder keeps of the water at a frame."""
-        own = (
-            {}
-            if self.hydrostatic
-            else {
-                "pressure": Field(
-                    "Pa", ("segment", "cell")
-                ),  # beyond the hydrostatic one, below the surface's cell
-                "w_faces": Field("m/s", ("segment", "face")),  # vertical speed of the water
-            }
-        )
-        return own | {
+        own = {
+            "pressure": Field(
+                "Pa", ("segment", "cell")
+            ),  # beyond the hydrostatic one, below the surface's cell
+            "w_faces": Field("m/s", ("segment", "face")),  # vertical speed of the water
+        }
+        return ({} if self.hydrostatic else own) | {
             "surface": Field("m", ("segment",)),  # its height; that of the bottom where it is dry
             "volume": Field("m", ("segment",)),  # water per area
             "content": Field("m", ("segment", "cell")),  # the part in each cell
@@ -277,6 +274,7 @@ class ColumnRow(Flow):
             faults.append(f"solid: one number of 0 to {c.n - 1} cells for each of {self.n_segment} segments")
         for name, end in (("upstream", self.upstream), ("downstream", self.downstream)):
             faults += [] if end is None else _faults_of_end(name, end, c.n)
+        faults += [fault for dam in self.dams if dam.aerated for fault in self._faults_of_air(dam)]
         if not faults and self.n_segment:
             steepest = float(np.abs(np.arctan(np.diff(self.bottom) / self.dx)).max(initial=0.0))
             if steepest > STEEPEST:
@@ -286,9 +284,21 @@ class ColumnRow(Flow):
                 )
         return tuple(faults)
 
+    def _faults_of_air(self, dam: RowDam) -> list[str]:
+        """Why air cannot lie behind a dam, one sentence each."""
+        solid, i = self.solid_cells()[self.inner], dam.end
+        why = {
+            f"water falls freely with pressure {Pressure.FULL.word!r} alone": self.hydrostatic,
+            "in a periodic row it could land upstream of the dam": self.periodic,
+            "water leaves a porous dam below its crest": dam.porous,
+            "the row ends behind it": i >= self.n_segment,
+            "what stands behind it is as high": i < self.n_segment and not solid[i] < solid[i - 1],
+        }
+        return [f"dam '{dam.name}', aerated: {text}" for text, so in why.items() if so]
+
     def refuses_grains(self, buoyancy: Buoyancy, period: float) -> tuple[str, ...]:
         """Reasons why it cannot carry grains of a period along x [m], one sentence each; () if it can."""
-        faults: list[str] = []
+        faults = [f"dam '{dam.name}', aerated: for water alone so far" for dam in self.dams if dam.aerated]
         why = {
             Buoyancy.WEIGHT: "counts the slope of the surface twice",
             Buoyancy.PRESSURE: "lets still water among grains run down an inclined axis",

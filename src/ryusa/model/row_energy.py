@@ -26,7 +26,7 @@ class RowTerm(IntEnum):
     SIDE = 9  # lost at side walls
     SHEAR = 10  # lost by the stress between cells
     POROUS = 11  # lost by the drag of a porous solid
-    FALL = 12  # lost where water falls over a sill, strikes a wall or a dam, or leaves a cell that runs dry
+    FALL = 12  # lost where water falls, plunges, strikes a wall or a dam, or leaves a cell that runs dry
     UPWIND = 13  # lost by momentum that is carried with the speed upstream of a border between cells
     LATE = 14  # lost by the implicit step in time
     SURFACE = 15  # lost by the explicit surface, of which pressure of its own is one; negative at times

@@ -41,6 +41,9 @@ def _row_scalars(row: ColumnRow) -> dict[str, Any]:
             if end["course"] is None:
                 del end["course"]
     dams = [asdict(one) for one in row.dams]
+    for dam in dams:
+        if not dam["aerated"]:
+            del dam["aerated"]  # digests stay
     default = {one.name: one.default for one in fields(row) if one.name != "x_low"}
     numbers = {name: getattr(row, name) for name in _NUMBERS}
     numbers = {name: one for name, one in numbers.items() if one != default.get(name)}  # digests stay

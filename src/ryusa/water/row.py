@@ -23,10 +23,11 @@ from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
 from ryusa.water.row_energy import EnergyArrays
 from ryusa.water.row_inlet import NO_INFLOW
-from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_layout import NappeArrays, RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_nappe import BEYOND, STRIKES, air_of, closed, nappes_of, open_state, opened, with_air
 from ryusa.water.row_pressure import PressureArrays
 from ryusa.water.row_station import StationArrays
-from ryusa.water.row_step import COURANT_MET, FAULT_AT, N_SCALARS, NOT_PROJECTED, STEPS
+from ryusa.water.row_step import ASTRAY, COURANT_MET, FAULT_AT, N_SCALARS, NOT_PROJECTED, STEPS
 from ryusa.water.row_step import advance_row as _advance
 from ryusa.water.solve import FAULTS
 
@@ -40,6 +41,16 @@ NO_PRESSURE = (
     "Look at the last frames: ryusa draw RUN long_section --at T. Shorter segments (water.row.segment), or "
     'water.row.pressure = "hydrostatic", take a steeper surface.',
 )
+OF_NAPPES = {
+    ASTRAY + BEYOND: (
+        "The nappe of an aerated dam lands beyond the end of the row",
+        "Lengthen the row behind the dam (water.row.bottom), or let it end there with a free fall.",
+    ),
+    ASTRAY + STRIKES: (
+        "The nappe of an aerated dam strikes the face of a dam behind it",
+        "Set the dams farther apart, or leave out aerated = true.",
+    ),
+}
 IN_A_ROW = {  # hints that differ from those of one column
     TOO_SHORT: "Raise the top of the cells (water.row.height), or let less water in.",
     NOT_A_NUMBER: "Look at the last frames: ryusa draw RUN long_section --at T. A step of the bottom belongs "
@@ -67,6 +78,7 @@ class RowArrays:
     ends: RowEnds
     work: StationArrays
     pressure: PressureArrays | None = None
+    nappe: NappeArrays | None = None  # then the others are of the opened row
 
     @staticmethod
     def of(row: ColumnRow) -> "RowArrays":
@@ -81,7 +93,9 @@ class RowArrays:
             np.zeros((stations, n)),
         )  # fmt: skip
         pressure = None if row.hydrostatic else PressureArrays.of(shape, n)
-        return RowArrays(parameters_of(row.column), shape, ends_of(row), work, pressure)
+        return RowArrays(
+            parameters_of(row.column), shape, ends_of(row), work, pressure, nappes_of(row, shape)
+        )
 
 
 def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = None) -> RowState:
@@ -148,8 +162,10 @@ def advance_row(
     Raises `WaterError` with the place if the surface leaves the column, if grains fill a cell completely, if
     nothing can enter at an inlet, if a speed is not finite, or if the stresses of a station do not converge.
     """
-    arrays, c = RowArrays.of(row) if arrays is None else arrays, row.column
-    shape = arrays.shape
+    arrays, c, before = RowArrays.of(row) if arrays is None else arrays, row.column, state
+    shape, nappe = arrays.shape, arrays.nappe
+    if nappe is not None:
+        row, solid, state = open_state(row, solid, state)
     stations = len(shape.left)
     matrix = _matrix_of(row, solid)
     given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)), laden=solid is not None)
@@ -170,21 +186,25 @@ def advance_row(
     arrays.work.energy.books[:] = 0.0
     status = _advance(
         arrays.p, shape, arrays.ends, matrix, given, float(time), float(longest), water, arrays.work, rows,
-        faces, out, scalars, pressure,
+        faces, out, scalars, pressure, nappe,
     )  # fmt: skip
     if status != DONE:
-        cause, hint = (FAULTS | {NO_INFLOW: NOTHING_ENTERS, NOT_PROJECTED: NO_PRESSURE})[status]
-        where = row.x_low + (scalars[FAULT_AT] - row.inner.start) * row.dx
+        cause, hint = (FAULTS | {NO_INFLOW: NOTHING_ENTERS, NOT_PROJECTED: NO_PRESSURE} | OF_NAPPES)[status]
+        at = scalars[FAULT_AT] - (0 if nappe is None else int((nappe.air < scalars[FAULT_AT]).sum()))
+        where = row.x_low + (at - row.inner.start) * row.dx
         raise WaterError(
             f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=IN_A_ROW.get(status, hint)
         )
     energy = state.energy + arrays.work.energy.books
     if pressure is not None:
         own = {"w": pressure.w.copy(), "pressure": pressure.p.copy()}
-    for array in (*water, rows, faces, out, energy, *own.values()):
+    own |= water._asdict() | {"profiles": rows, "edges": faces, "budgets": out}
+    if nappe is not None:
+        own = {name: closed(one, nappe.air) for name, one in own.items()}
+    for array in (*own.values(), energy):
         array.flags.writeable = False
     return replace(
-        state, **water._asdict(), **own, profiles=rows, edges=faces, budgets=out, energy=energy,
+        before, **own, energy=energy,
         t=state.t + time, steps=state.steps + int(scalars[STEPS]),
         courant=max(state.courant, float(scalars[COURANT_MET])),
     )  # fmt: skip
@@ -201,6 +221,7 @@ def discharges(row: ColumnRow, state: RowState) -> Floats:
 
 def shape_of(row: ColumnRow) -> RowShape:
     """Geometry of a row as the compiled step takes it."""
+    air, row = air_of(row), opened(row)
     n = row.n_segment
     bottom = row.bottom_with_ends()
     left, right = row.stations_between
@@ -216,16 +237,18 @@ def shape_of(row: ColumnRow) -> RowShape:
         if end is not None and end.kind is EndKind.DISCHARGE:
             kind[j] = INFLOW
     steep = 1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2
-    return RowShape(
+    shape = RowShape(
         left, right, west, east, row.solid_cells(), row.cells_of_dams(), kind, bottom,
         steep, steep if row.hydrostatic else np.ones(len(left)), not row.hydrostatic,
         (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),
     )  # fmt: skip
+    return with_air(shape, air)
 
 
 def ends_of(row: ColumnRow) -> RowEnds:
     """Ends of a row as the compiled step takes them."""
+    row = opened(row)
     n, cells = row.n_segment, row.column.n
     bottom = row.bottom_with_ends()
     rule, depth = np.full(2, SAME_DEPTH), np.zeros(2)

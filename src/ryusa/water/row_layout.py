@@ -1,4 +1,4 @@
-"""Arrays of a row of columns as its compiled functions take them: geometry, ends, solids, grains, water."""
+"""Arrays of a row of columns as its compiled functions take them: geometry, solids, grains, water, nappes."""
 
 from typing import NamedTuple
 
@@ -67,3 +67,17 @@ class RowWater(NamedTuple):
     wet: Floats  # wet thickness of each cell [m], shape (n_segment, n)
     surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_segment,)
     passed: Floats  # water that has passed each station [m2], shape (n_station,)
+
+
+class NappeArrays(NamedTuple):
+    """Aerated sills of an opened row, and what lands in a step; `n_all` counts the segments of air too."""
+
+    air: Ints  # segment of air behind each sill, and the wall station behind it, shape (n_sill,)
+    is_air: Ints  # 1 for such a segment, shape (n_all,)
+    free: Ints  # 1 while the water falls freely, 0 while the pool drowns the sill, shape (n_sill,)
+    high: Floats  # height of the water that leaves each sill times its discharge [m3/s], shape (n_sill,)
+    lands: Floats  # water that lands on each segment, per area and time [m/s], shape (n_all,)
+    along: Floats  # its momentum along x, over density and per area and time [m2/s2], shape (n_all,)
+    upwards: Floats  # and upwards
+    given: Floats  # the momentum along x that each cell of a station takes [m2/s2], shape (n_station, n)
+    row: Floats  # work array, shape (n,)

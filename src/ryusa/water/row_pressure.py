@@ -15,8 +15,9 @@ from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.exchange import Ints
 from ryusa.water.limiter import limited
-from ryusa.water.row_layout import RowMatrix, RowShape, RowWater
+from ryusa.water.row_layout import NappeArrays, RowMatrix, RowShape, RowWater
 from ryusa.water.row_multigrid import Multigrid
+from ryusa.water.row_nappe import give_momentum
 from ryusa.water.row_pressure_grains import PressedGrains, divide_grains
 from ryusa.water.row_station import StationArrays
 
@@ -292,7 +293,7 @@ def gather_w(
 @kernel
 def predict_w(
     p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, water: RowWater, work: StationArrays,
-    a: PressureArrays,
+    a: PressureArrays, nappe: NappeArrays | None,
 ) -> None:  # fmt: skip
     """Predict W of each segment with the pressure of the last step: explicit along x, implicit along z.
 
@@ -311,6 +312,8 @@ def predict_w(
             continue
         low, middle, high, right = work.step.a, work.step.b, work.step.c, work.step.r
         gather_w(p, shape, dt, water, work, a, i, right)
+        if nappe is not None:
+            right[top] += dt * nappe.upwards[i]
         per_dt, per_dz2 = 1.0 / dt, 1.0 / p.dz**2
         for f in range(first + 1, top + 1):
             k, part, per_gap = f - 1, a.part[i, f], 1.0 / a.gap[i, f]  # the row of the system, and the water
@@ -351,7 +354,7 @@ def along_bottom(shape: RowShape, u: Floats, tilt: Floats, i: int) -> float:
 @kernel
 def begin_pressure(
     p: ColumnParameters, shape: RowShape, dt: float, matrix: RowMatrix, given: Floats, water: RowWater,
-    work: StationArrays, a: PressureArrays,
+    work: StationArrays, a: PressureArrays, nappe: NappeArrays | None,
 ) -> None:  # fmt: skip
     """All that the pressure has to do once the surface has moved, before the stations are solved."""
     find_tops(shape, water.wet, a.top)
@@ -359,8 +362,9 @@ def begin_pressure(
     divide_among_faces(p, shape, water, a)
     carry_along(shape, dt, water, work, a.nu)
     push_stations(p, shape, given, water, a)
+    give_momentum(p, shape, a.top, a.force, nappe)
     carry_w(p, shape, dt, water, work, a)
-    predict_w(p, shape, dt, matrix, water, work, a)
+    predict_w(p, shape, dt, matrix, water, work, a, nappe)
 
 
 @kernel

@@ -16,7 +16,8 @@ from ryusa.water.limiter import limited
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
 from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
 from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
-from ryusa.water.row_layout import RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_layout import NappeArrays, RowEnds, RowGrains, RowMatrix, RowShape, RowWater
+from ryusa.water.row_nappe import LANDED, book_nappes, hang, throw, with_landing
 from ryusa.water.row_pressure import PressureArrays, begin_pressure, find_tops, keep_w, viscosities
 from ryusa.water.row_pressure_energy import add_held_upwards, book_faces, book_projection, book_push
 from ryusa.water.row_projection import project, worst_segment
@@ -29,6 +30,7 @@ MOST_TAKEN = 0.98  # largest share of the water of a segment that leaves it in a
 FAULT_AT, STEPS, COURANT_MET, TURNS = range(4)
 N_SCALARS = 4
 NOT_PROJECTED = 6  # after those of `momentum_balance` and `row_inlet`: no pressure was found
+ASTRAY = 6  # before those of a nappe, BEYOND and STRIKES of `row_nappe`
 # largest viscosity times dt/dx**2 of a step with a pressure of its own: along x it is explicit
 DIFFUSED = 0.25
 
@@ -108,7 +110,7 @@ def fluxes_along(
         for k in range(p.n):
             taken += max(flux[shape.east[i], k], 0.0) + max(-flux[shape.west[i], k], 0.0)
         most = MOST_TAKEN * water.volume[i] * shape.dx
-        if taken * dt > most:
+        if taken * dt > most > 0.0:  # what passes into air behind a sill is not its own
             part = most / (taken * dt)
             for k in range(p.n):
                 if flux[shape.east[i], k] > 0.0:
@@ -185,14 +187,19 @@ def driving_gradient(p: ColumnParameters, shape: RowShape, j: int, water: RowWat
 @kernel
 def continuity(
     p: ColumnParameters, shape: RowShape, dt: float, phi: Floats, water: RowWater, work: StationArrays,
-    scalars: Floats,
+    scalars: Floats, pressure: PressureArrays | None, nappe: NappeArrays | None,
 ) -> int:  # fmt: skip
     """Move the water on along x, and find the vertical fluxes and the momentum that is carried.
 
     Returns
     -------
-    status : DONE, or a fault of `momentum_balance` in the segment `scalars[FAULT_AT]`.
+    status : DONE, or a fault of `momentum_balance` or of a nappe in the segment `scalars[FAULT_AT]`.
     """
+    if nappe is not None and pressure is not None:
+        what, at = throw(p, shape, water, work.flux, pressure.w, nappe)
+        if what != LANDED:
+            scalars[FAULT_AT] = at
+            return ASTRAY + what
     n, per_dt, per_dx = p.n, 1.0 / dt, 1.0 / shape.dx
     for j in range(len(shape.left)):
         total = 0.0
@@ -206,6 +213,8 @@ def continuity(
             work.old[i, k] = water.content[i, k]
         if shape.inner[0] <= i < shape.inner[1]:
             water.volume[i] -= dt * per_dx * (work.total[east] - work.total[west])
+            if nappe is not None:
+                water.volume[i] += dt * nappe.lands[i]
             m, surface = distribute_water(
                 p, shape.first[i], phi[i], water.volume[i], water.content[i], water.wet[i], work.middle
             )
@@ -213,9 +222,12 @@ def continuity(
                 scalars[FAULT_AT] = i
                 return TOO_SHORT if m >= n else NO_ROOM
             water.surface[i] = surface if m >= 0 else p.z_low + shape.first[i] * p.dz
+        entering = work.flux[west]
+        if nappe is not None:
+            entering = with_landing(shape, i, entering, water.wet[i], nappe)
         fluxes_upwards(
-            p, shape.first[i], per_dx, per_dt, water.content[i], work.old[i], work.flux[west],
-            work.flux[east], work.q[i],
+            p, shape.first[i], per_dx, per_dt, water.content[i], work.old[i], entering, work.flux[east],
+            work.q[i],
         )  # fmt: skip
         # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
         turned_west, turned_east = math.sqrt(shape.steep[west]), math.sqrt(shape.steep[east])
@@ -233,7 +245,7 @@ def continuity(
 def advance_row(
     p: ColumnParameters, shape: RowShape, ends: RowEnds, matrix: RowMatrix, grains: RowGrains, time: float,
     longest: float, water: RowWater, work: StationArrays, rows: Floats, faces: Floats, out: Floats,
-    scalars: Floats, pressure: PressureArrays | None,
+    scalars: Floats, pressure: PressureArrays | None, nappe: NappeArrays | None,
 ) -> int:  # fmt: skip
     """Move the water on, in as few equal steps as the Courant number and `longest` permit.
 
@@ -248,13 +260,15 @@ def advance_row(
         them, with a leading axis of stations.
     scalars : receives FAULT_AT (segment or station), STEPS, COURANT_MET and TURNS, shape (N_SCALARS,).
     pressure : state and work arrays of a pressure of its own; None, which compiles without it: hydrostatic.
+    nappe : of an opened row with a pressure of its own; None likewise.
 
     Returns
     -------
-    status : DONE, NO_INFLOW, NOT_PROJECTED, or a fault of `momentum_balance`.
+    status : DONE, NO_INFLOW, NOT_PROJECTED, that of a nappe over ASTRAY, or a fault of `momentum_balance`.
     """
     # One function: the order of a step, in which pressure beyond the hydrostatic one has its places
     remaining, energy = time, work.energy
+    hang(p, shape, water, False, nappe, energy.books)
     add_held(p, shape, water, -1.0, energy.books)
     forces = grains.force
     if pressure is not None:
@@ -282,11 +296,11 @@ def advance_row(
             return NO_INFLOW
         if grains.laden:
             book_displaced(p, shape, grains.phi, water, work.level, energy.books)
-        status = continuity(p, shape, dt, grains.phi, water, work, scalars)
+        status = continuity(p, shape, dt, grains.phi, water, work, scalars, pressure, nappe)
         if status != DONE:
             return status
         if pressure is not None:
-            begin_pressure(p, shape, dt, matrix, grains.force, water, work, pressure)
+            begin_pressure(p, shape, dt, matrix, grains.force, water, work, pressure, nappe)
             book_faces(p, shape, dt, work, water, pressure, energy.books)
         first = shape.inner[0]
         driver = imposed_gradient(p, water.content[first], water.surface[first])
@@ -309,6 +323,9 @@ def advance_row(
         book_row(p, shape, dt, driver, grains.phi, water, energy, work.total, out)
         if pressure is not None:
             book_push(p, shape, dt, grains.laden, work, water, pressure, energy.books, out)
+            book_nappes(
+                p, shape, dt, grains, work, water, pressure.top, pressure.next_w, nappe, energy.books, out
+            )
         for j in range(len(shape.left)):
             if shape.kind[j] == OPEN:
                 for k in range(p.n):
@@ -321,6 +338,7 @@ def advance_row(
             book_projection(p, shape, dt, water, pressure, energy.books, rows, out)
             keep_w(shape, water.u, pressure)
             scalars[TURNS] += turns
+        hang(p, shape, water, True, nappe, energy.books)
         scalars[STEPS] += 1.0
         scalars[COURANT_MET] = max(scalars[COURANT_MET], speed * dt / shape.dx)
     add_held(p, shape, water, 1.0, energy.books)

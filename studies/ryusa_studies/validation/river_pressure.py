@@ -1,4 +1,4 @@
-"""A row of columns with a pressure of its own, water alone: waves, porous beds, sills, jumps (design/0030).
+"""A row of columns with a pressure of its own, water alone: waves, beds, sills, jumps, nappes (design/0030).
 
 The limits are twice the errors of a throw-away prototype of the same equations, unless their reason says
 otherwise; they were written down before the package had a pressure, those of the jump before its first run.
@@ -30,6 +30,7 @@ from ryusa.study import (
 )
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa_studies.validation import river_jump as jump
+from ryusa_studies.validation import river_sill as sill
 
 TITLE = "Pressure along a row"
 G = 9.80665
@@ -287,11 +288,11 @@ def _of_both(function: object) -> list[Task]:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Two minutes with the jumps; when quick without what takes longest, or misses its limit."""
+    """Four minutes with jumps and sills; when quick without what takes longest, or misses its limit."""
     every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, _alone(), *_of_both(collapse), *jump.tasks()]
+    return [*every, _alone(), *_of_both(collapse), *jump.tasks(), *sill.tasks()]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -299,7 +300,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     every = [_standing(found), _wavy(found, plan), _pore(found), _plate(found), _brink(found)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, _solitary(found), _collapse(found), *jump.judge(found)]
+    return [*every, _solitary(found), _collapse(found), *jump.judge(found), *sill.judge(found)]
 
 
 def _standing(found: Found) -> Finding:

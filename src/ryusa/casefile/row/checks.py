@@ -11,6 +11,7 @@ from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.end_checks import check_courses, check_ends
 from ryusa.casefile.row.ends import discharge_of, levels_of, peak_discharge
+from ryusa.casefile.row.nappe import check_air
 from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
@@ -259,7 +260,8 @@ def _shape(case: Case, keys: RowSection) -> Iterator[CaseError]:
             "water.column.cell", column.cell, f"{plan.cell:.3g} m must be above 1/15 of the roughness, "
             f"{rough / 15.0:.3g} m, because Eq. (9) is zero below 1/30",
         )  # fmt: skip
-    yield from _dams(plan, keys)
+    dams = [*_dams(plan, keys)]
+    yield from dams or check_air(case, plan, keys)
     yield from _depths(case, plan, keys)
 
 

@@ -12,6 +12,7 @@ from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.ends import discharge_of, least_discharge, peak_discharge, width_of
 from ryusa.casefile.row.hydrograph import hydrograph_rows
+from ryusa.casefile.row.nappe import nappe_rows
 from ryusa.casefile.row.pressure_rows import pressure_rows
 from ryusa.casefile.row.reach_rows import reach_rows
 from ryusa.casefile.row.reach_source import reach_of
@@ -225,6 +226,7 @@ def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case.motion))))) ** (2.0 / 3.0)
             origin = f"critical flow without loss, q = (2/3)^1.5 sqrt(g) H^1.5; {_own_head(end - first)}"
             rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
+            rows += nappe_rows(case, plan, dam, q)
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
             rows += _deposit_behind(dam.name, found)
     return rows

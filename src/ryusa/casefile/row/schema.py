@@ -106,6 +106,10 @@ class RowDamSection(Section):
     given."""
     diameter: PositiveLength | None = None
     """Diameter of its grains; the mean diameter of the case when not given."""
+    aerated: bool = False
+    """Whether air lies below the nappe, the water that falls over the crest; else it clings to the dam. With
+    pressure = "full" alone: the water leaves the crest freely and lands in the pool, until the pool has risen
+    above the crest."""
 
 
 class RowSection(Section):
