@@ -73,8 +73,13 @@ QUESTIONS = (
         ("front", "deposit"), ("long_section", "front", "grains"),
     ),
     CaseQuestion(
+        "Does pore water hold a slope under water, or let it run?", ("immersed_column",),
+        ("ryusa draw RUN flow_field", "ryusa measure RUN front"), "pore pressure, flow within, run-out",
+        ("front",), ("flow_field", "grains"),
+    ),
+    CaseQuestion(
         "How deep is the scour under a jet or at a pier?", (), (),
-        "not to be had: the water of a row is hydrostatic, and has no jet and no flow round a pier",
+        "not to be had: an aerated dam has a jet, but no grains yet, and a row has no flow round a pier",
     ),
     CaseQuestion(
         "What is the angle of repose of my material?",

@@ -25,7 +25,7 @@ SHARE = 0.995  # of the values that a colour scale covers
 SAID = {"bed": "rise of the bed", "transport": "grains $q_s$"}
 TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
 MOST = 0.9
-CALM = 0.98  # of the energy line that its axis covers: that of thin fast films would dwarf all else
+CALM = 0.98  # of lines of heads that their axis covers: those of thin fast films would dwarf all else
 
 
 @style.house
@@ -112,7 +112,7 @@ def _note_exaggeration(figure: Figure, axes: Axes, scale: float) -> None:
     axes.annotate(
         f"heights {times:.2g} times exaggerated" if times >= 1.05 else "to scale" if times > 0.95
         else f"heights drawn {times:.2g} times as large as lengths",
-        (0, 1), (0, 3), xycoords="axes fraction", textcoords="offset points", fontsize=style.NOTE_SIZE,
+        (0, 1), (0, 12), xycoords="axes fraction", textcoords="offset points", fontsize=style.NOTE_SIZE,
     )  # fmt: skip
 
 
@@ -185,15 +185,17 @@ def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *,
         return
     begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "
     axes.annotate(
-        f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (0, 12), xycoords="axes fraction",
+        f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (0, 21), xycoords="axes fraction",
         textcoords="offset points", fontsize=7.0,
     )  # fmt: skip
 
 
 def _head(found: LongSection) -> float:
-    """Elevation below which most of the energy line lies [m]; -inf where all is dry."""
-    wet = _deep(found)
-    return float(np.quantile(found.elevation(found.energy)[wet], CALM)) if wet.any() else -np.inf
+    """Elevation below which most of the lines of heads lie [m]; -inf where all is dry."""
+    wet, heads = _deep(found), [found.energy]
+    if found.pressure_head is not None:
+        heads.append(found.pressure_head)
+    return max(float(np.quantile(found.elevation(one)[wet], CALM)) for one in heads) if wet.any() else -np.inf
 
 
 def _over_segments(

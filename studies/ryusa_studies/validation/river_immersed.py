@@ -23,7 +23,7 @@ from ryusa.running.stops import Stop
 from ryusa.study import Band, Finding, Found, Source, Task, calculation, comparison, misfit
 from ryusa_studies.validation.river_dam_break import whole
 
-CASE = "validation/immersed_column.toml"
+CASE = "immersed_column.toml"
 KINDS = ("loose", "dense")
 LONG, G = 0.015, 9.80665  # of the column [m]
 AT, EARLY = 0.005, 0.05  # where the pressure at the floor is read [m], and until when it is averaged [s]
