@@ -54,6 +54,7 @@ def _features(case: Mapping[str, Any]) -> tuple[object, ...]:
     }
     upstream, downstream = ((row.get(end) or {}).get("end") for end in ("upstream", "downstream"))
     return (
+        row.get("pressure"),
         kind, kind == "stream", "row" if row else water.get("profile"), upstream, downstream,
         bool(row.get("dams")), bool(case.get("feeds")), bool(case.get("exits")), bool(walls),
         any(one.get("servo") for one in walls), any(one.get("angular_velocity") for one in walls),
