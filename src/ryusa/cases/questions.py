@@ -73,6 +73,12 @@ QUESTIONS = (
         ("front", "deposit"), ("long_section", "front", "grains"),
     ),
     CaseQuestion(
+        "Which waves does a steep stream make of its bed?", ("antidunes",),
+        ("ryusa measure RUN bed_waves", "ryusa draw RUN x_t"),
+        "length, height, speed of waves, and their surface",
+        ("transport",), ("x_t", "flow_field", "grains"),
+    ),
+    CaseQuestion(
         "Does pore water hold a slope under water, or let it run?", ("immersed_column",),
         ("ryusa draw RUN flow_field", "ryusa measure RUN front"), "pore pressure, flow within, run-out",
         ("front",), ("flow_field", "grains"),

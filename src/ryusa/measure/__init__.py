@@ -2,6 +2,7 @@
 
 from ryusa.catalogue import MEASURES, called
 from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
+from ryusa.measure.bed_waves import BedWaves, bed_waves
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
@@ -49,6 +50,7 @@ __all__ = [
     "ApparentContact",
     "Average",
     "Averages",
+    "BedWaves",
     "Bounds",
     "Collisions",
     "Cone",
@@ -89,6 +91,7 @@ __all__ = [
     "alternating",
     "apparent_contact",
     "average",
+    "bed_waves",
     "bounds",
     "classical",
     "collisions",

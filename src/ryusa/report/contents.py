@@ -29,7 +29,7 @@ _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
 _OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
 _LINES = 400  # of the case file that are shown
 _SEGMENTS = 24  # of a row that a table on the page lists
-_DRAWN = {"x_t", "flow_field"}  # numbers over a plane are drawn, and no table to be read
+_LONG = {"x_t", "flow_field", "bed_waves"}  # tables that a page leaves to `ryusa measure`
 _PLAIN = (
     "walls",
     "traffic",
@@ -106,7 +106,7 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     had = _had(results)
     along_row = _measures_of_row(results, had)
     for entry in MEASURES:
-        if (kind in entry.builders and had >= _asked(entry)) or entry.name in along_row - _DRAWN:
+        if (kind in entry.builders and had >= _asked(entry)) or entry.name in along_row - _LONG:
             _attempt(found, f"measure {entry.name}", lambda one=entry: _measure(found, results, one))
     progress(0.2)
     lacking = {one.name for one in MEASURES if not had >= _asked(one)}
