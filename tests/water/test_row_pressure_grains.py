@@ -11,9 +11,11 @@ from ryusa.laws.families import BedKind, Hindrance, Lift, Mixing, Pressure
 from ryusa.model.row import ColumnRow
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.water import momentum_balance as m
+from ryusa.water.row_coupling import RowCoupling
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_layout import RowWater
 from ryusa.water.row_pressure import divide_among_faces, find_rises
+from ryusa.water.row_projection import FINE, divergence
 
 FULL = {"pressure": Pressure.FULL}
 
@@ -149,3 +151,59 @@ def test_grains_at_rest_under_still_water_do_not_stir_it(tilt):
     assert max(np.abs(now.u).max(), np.abs(now.w).max(), np.abs(grains.told.w).max()) < 1e-12
     assert np.abs(now.pressure).max() < 1e-12
     assert np.abs(now.surface - start.surface).max() < 1e-14
+
+
+def moving(segments, length=0.1, **more):
+    """A dense layer of light grains that sinks in a period, at the first exchange."""
+    pitch = 1.02 * D
+    across = round(length / pitch)
+    at = lattice(across * pitch, 14 * pitch, pitch, low=8.0 * pitch)
+    made, first = cloud(
+        at=at, length=across * pitch, tilt=0.0, density=1048.0, hindrance=Hindrance.DI_FELICE, **more
+    )
+    made = replace(made, world_low=(-math.inf,) * 3)
+    c = column_of(across * pitch * D, 0.0, dz=pitch, n=40, depth=34 * pitch, mixing=Mixing.LAMINAR)
+    row = ColumnRow(c, across * pitch / segments, np.zeros(segments), G, **FULL)
+    return (made, first), row, GrainsInRow.begin(made, row, at).at_rest(np.full(segments, 34 * pitch))
+
+
+@pytest.mark.parametrize("wave", [0.0, 0.004])
+def test_the_flux_of_water_and_grains_has_no_divergence_after_a_step(wave):
+    """With what the grains will do to the change of pressure, over a level bottom and a wavy one."""
+    made, row, start = moving(24)
+    row = replace(row, bottom=wave * np.sin(2.0 * np.pi * (np.arange(24) + 0.5) / 24))
+    start = GrainsInRow.begin(made[0], row, made[1].x).at_rest(np.full(24, 34 * 1.02 * D))
+    *_, (grains, now, _, _, _) = advance_together(made, row, start, 3, longest=20)
+    arrays = grains._arrays
+    a, water = arrays.pressure, RowWater(*(np.array(getattr(now, name)) for name in RowWater._fields))
+    left = divergence(arrays.p, arrays.shape, arrays.work.flux, water, a, np.zeros_like(a.p))
+    assert np.abs(a.found).max() > 1e-9
+    assert left < 2.0 * FINE * math.sqrt(G * row.column.dz)
+
+
+def test_pressure_settles_where_the_water_takes_several_steps_in_an_interval():
+    made, row, start = moving(32)
+    borne = []
+    for _, now, _, _, _ in advance_together(made, row, start, 12, longest=400):
+        borne.append(1000.0 * now.pressure[:, 0] * row.column.area / (made[0].m_weight.sum() * G))
+    assert now.steps > 3 * 12
+    assert borne[-1] == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_grain_that_enters_the_water_is_not_thrown_back():
+    """Its flux begins within a step, and the pressure of that step is not told for a whole interval."""
+    at = np.array([[0.05, 0.0, 0.02], [0.03, 0.0, 0.01]])
+    made, _ = cloud(at=at, length=0.1, tilt=0.0, hindrance=Hindrance.DI_FELICE)
+    made = replace(made, world_low=(-math.inf,) * 3)
+    c = column_of(0.1 * D, 0.0, dz=D, n=30, depth=0.04, mixing=Mixing.LAMINAR)
+    row = ColumnRow(c, 0.01, np.zeros(10), G, start=np.full(10, 0.04), **FULL)
+    made = replace(made, flow=row)
+    water = replace(RowCoupling.begin(made, row, at), steps=100)
+    entered = water.among(at, 7)
+    assert (entered.steps, entered.due) == (100, 107)
+    v = np.array([[0.3, 0.0, -0.2], [0.0, 0.0, 0.0]])
+    told = entered.exchange(at, v, np.zeros((2, 4)))
+    weight = made.m_weight * G
+    assert np.abs(told[:, 6:8]).max() < 3.0 * weight[0]
+    assert (still := replace(water, row=replace(row, pressure=Pressure.HYDROSTATIC)).among(at, 7)).due == 8
+    assert still.steps == 1

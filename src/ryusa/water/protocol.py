@@ -89,7 +89,7 @@ class Fluid(Protocol):
         ----------
         x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
         step : of the engine; the next exchange is due one later, as the drag on those that entered is not
-            known yet.
+            known yet, but an interval later where their flux begins with a pressure.
         """
         ...
 

@@ -172,11 +172,14 @@ class RowCoupling(Fluid):
         Notes
         -----
         The water in each cell is what it was. What entering grains displace raises the surface with the next
-        exchange, a step later, and what leaving grains have held sinks.
+        exchange, a step later, and what leaving grains have held sinks. With a pressure of its own that comes
+        after an interval like others: a flux that begins within a step would be pressed into it within that
+        step, and the grains be told of this pressure for the whole of the next interval.
         """
         assert self.grains is not None
         grains = self.grains.among(x, self.state)
-        return replace(self, steps=1, due=step + 1, grains=grains, sampled=grains.sampled)
+        steps = 1 if self.row.hydrostatic else self.steps
+        return replace(self, steps=steps, due=step + steps, grains=grains, sampled=grains.sampled)
 
     def surface_at(self, x: Floats) -> Floats:
         """Height of the surface over z = 0 at places along the row [m], same shape."""

@@ -243,9 +243,11 @@ class GrainsInRow:
 
     @property
     def _yields(self) -> float:
-        """Density of the water over that of the grains and their added mass, in the mean [-]."""
-        inertia = float(self._grains.inertia.sum())
-        return self._laws.rho_w * float(self._grains.solid.sum()) / inertia if inertia > 0.0 else 0.0
+        """Density of the water over that of a grain and its added mass, of the lightest [-].
+
+        Too large a mobility lets the pressure come later, too small a one lets it grow.
+        """
+        return self._laws.rho_w * float((self._grains.solid / self._grains.inertia).max(initial=0.0))
 
     def at_rest(self, surface: Floats) -> RowState:
         """Water at rest among the grains up to the surface over the x axis [m], shape (n_segment,)."""

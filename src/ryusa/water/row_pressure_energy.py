@@ -105,6 +105,8 @@ def book_faces(
                 shear += 2.0 * dt * rubs * (w[f] - w[first]) * w[f]
             porous += 2.0 * dt * a.part[i, f] * a.drag[i, f] * w[f] ** 2
             given = a.grains.force[i, f - 1] + a.grains.force[i, f] * (1.0 if f < top else 2.0)
+            for k in range(f + 1, p.n if f == top else 0):  # cells that have fallen dry in the interval
+                given += 2.0 * a.grains.force[i, k]
             grains -= dt * p.dz / p.rho_w * given * w[f]
             rise = (a.p[i, f] if f < top else 0.0) - a.p[i, f - 1]
             surface += 2.0 * dt * rise * a.part[i, f] / a.gap[i, f] * w[f]

@@ -19,6 +19,7 @@ class PressedGrains(NamedTuple):
     """The grains as the pressure meets them in an interval; all 0 without any."""
 
     yields: Floats  # interval over density and added mass in terms of the water's [s], shape (1,)
+    passes: Floats  # whether grains pass each station, 1 or 0, shape (n_station,)
     phi: Floats  # concentration of free grains in the segments [-], shape (n_all, n)
     force: Floats  # of the water on free grains upwards [N/m3], shape (n_all, n)
     drag: Floats  # of fixed grains upwards, over the speed of the water [N s/m4], shape (n_all, n)
@@ -31,7 +32,9 @@ class PressedGrains(NamedTuple):
         """Arrays of a row without grains."""
         phi, force, drag = np.zeros((3, segments, n))
         up, part = np.zeros((2, segments, n + 1))
-        return PressedGrains(np.zeros(1), phi, force, drag, np.zeros((stations, n)), up, part)
+        return PressedGrains(
+            np.zeros(1), np.zeros(stations), phi, force, drag, np.zeros((stations, n)), up, part
+        )
 
 
 @kernel
@@ -52,14 +55,17 @@ def set_grains(
     Notes
     -----
     Grains do not pass a wall, an inlet, or the upper end of a row, where a screen holds them (as in `tell`).
+    Beyond the lower end they are as in the last segment, of which `through` has about a half.
     """
     volume = area * p.dz
     periodic = len(shape.kind) == len(shape.bottom)
     grains.yields[0] = yields
+    last = len(shape.kind) - 1
     for j in range(len(shape.kind)):
-        passes = 1.0 if shape.kind[j] == OPEN and (periodic or j > 0) else 0.0
+        grains.passes[j] = 1.0 if shape.kind[j] == OPEN and (periodic or j > 0) else 0.0
+        times = grains.passes[j] * (2.0 if j == last and not periodic else 1.0)
         for k in range(p.n):
-            grains.along[j, k] = passes * through[j, k] / area
+            grains.along[j, k] = times * through[j, k] / area
     for i in range(len(shape.bottom)):
         for k in range(p.n):
             grains.phi[i, k] = sums[SOLID, i, k] / volume
@@ -88,4 +94,5 @@ def mobility_along(shape: RowShape, wet: Floats, j: int, k: int, grains: Pressed
     """
     left, right = shape.left[j], shape.right[j]
     solid = 0.5 * (grains.phi[left, k] * wet[left, k] + grains.phi[right, k] * wet[right, k])
+    solid *= grains.passes[j]
     return float(grains.yields[0] * solid / (0.5 * (wet[left, k] + wet[right, k])) / shape.dx)

@@ -225,7 +225,7 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
         left, right = shape.left[j], shape.right[j]
         if shape.kind[j] != OPEN:
             continue
-        last = -1
+        last, a.change[j, :] = -1, 0.0
         for k in range(p.n):
             if a.gain[j, k] != 0.0:
                 rise = a.found[right, k] - a.found[left, k]
@@ -233,7 +233,8 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
                     rise -= 0.5 * shape.dx * a.tilt[j] * (a.within[left, k] + a.within[right, k])
                 water.u[j, k] -= a.gain[j, k] * rise
                 if follow:
-                    a.grains.along[j, k] -= mobility_along(shape, water.wet, j, k, a.grains) * p.dz * rise
+                    a.change[j, k] = -mobility_along(shape, water.wet, j, k, a.grains) * p.dz * rise
+                    a.grains.along[j, k] += a.change[j, k]
             if water.wet[left, k] + water.wet[right, k] > 0.0 and k >= max(
                 shape.first[left], shape.first[right]
             ):
@@ -241,6 +242,9 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
         for k in range(max(last + 1, 1), p.n):
             if last >= 0:
                 water.u[j, k] = water.u[j, last]
+    if follow and a.sloped:
+        pass_faces(shape, a.change, a)
+        a.grains.up[:] += a.slope
     for i in range(shape.inner[0], shape.inner[1]):
         top = a.top[i]
         for f in range(shape.first[i] + 1, top + 1):
@@ -248,7 +252,7 @@ def correct(p: ColumnParameters, shape: RowShape, water: RowWater, a: PressureAr
             rise = above - a.found[i, f - 1]
             a.next_w[i, f] -= a.pull[i, f] * rise
             if follow:
-                a.grains.up[i, f] -= yields * a.grains.part[i, f] / a.gap[i, f] * rise
+                a.grains.up[i, f] -= yields * a.grains.part[i, f] / a.gap[i, f] ** 2 * rise
         for f in range(max(top, shape.first[i]) + 1, p.n + 1):
             a.next_w[i, f] = a.next_w[i, top] if top > shape.first[i] else a.next_w[i, f]
         for k in range(shape.first[i], top):
