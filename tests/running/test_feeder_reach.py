@@ -120,6 +120,11 @@ def fed(place: Path) -> Results:
     return ryusa.run(river(place), place / "runs" / "river", progress=False)
 
 
+def test_a_pressure_of_its_own_is_refused_beside_a_feeder_reach(place: Path) -> None:
+    with pytest.raises(CaseError, match="knows nothing of grains that enter by end = 'feeder reach'"):
+        river(place, {"water.row.pressure": "full"})
+
+
 def test_a_reach_supplies_the_discharge_and_the_grains_of_its_record(place: Path) -> None:
     run = Results.open(place / "runs" / "even")
     found, water = supplied(run), run.row

@@ -77,7 +77,7 @@ def _lines(axes: Axes, found: FlowField, edges: Floats) -> None:
 def _arrows(axes: Axes, found: FlowField, most: float) -> None:
     """Arrows at some of the cells with water."""
     wet = np.isfinite(found.u)
-    if not wet.any() or most <= SMALL:
+    if not wet.any() or not float(np.nanmax(np.hypot(found.u, found.w))) > SMALL:
         return
     cells = np.flatnonzero(wet.any(axis=0))
     every = [max(-(-size // few), 1) for size, few in zip((len(found.x), len(cells)), ARROWS, strict=True)]

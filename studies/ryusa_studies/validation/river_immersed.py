@@ -112,8 +112,8 @@ def judge(found: Found) -> Sequence[Finding]:
     )
     about = {
         "column": f"15 mm long; {each}",
-        "grains": "0.3 mm, 9,228; one seed",
-        "hydrostatic": "the dense column stirs the water until it leaves the cells, after 0.01 s",
+        "grains": "0.3 mm; one seed",
+        "hydrostatic": "the loose column alone: in a trial with the dense one water left the cells at 0.01 s",
     }
     rondon = Source("Rondon, Pouliquen & Aussillous 2011, Phys. Fluids 23, 073301: signs, by its abstract")
     pressure = comparison(

@@ -12,6 +12,7 @@ from ryusa.casefile.motion import slope
 from ryusa.casefile.row.end_checks import check_courses, check_ends
 from ryusa.casefile.row.ends import discharge_of, levels_of, peak_discharge
 from ryusa.casefile.row.nappe import check_air
+from ryusa.casefile.row.reach import END
 from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
@@ -34,6 +35,7 @@ from ryusa.casefile.row.values import (
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.errors import CaseError
+from ryusa.laws.families import Pressure
 from ryusa.model.row import STEEPEST
 
 MOST_SEGMENTS = 100_000
@@ -50,6 +52,12 @@ def check_row(case: Case) -> Iterator[CaseError]:
         return
     if water.profile != "column":
         return  # reported as a key without effect
+    feeder = keys.upstream is not None and keys.upstream.end == END
+    if feeder and keys.pressure == Pressure.FULL.word:
+        yield CaseError(
+            "water.row.pressure", keys.pressure, f"knows nothing of grains that enter by end = '{END}'; "
+            f"take '{Pressure.HYDROSTATIC.word}', or [[feeds]] of grains that fall in",
+        )  # fmt: skip
     if stream(case):
         found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(case.column)]
     elif water_alone(case):

@@ -50,7 +50,7 @@ def check_air(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError
             "has no effect at the end of the row: end = 'free fall' has air behind it": behind >= plan.n,
             f"has no effect before dam '{'' if after is None else after.name}', which is as high":
                 after is not None and after.concentration is None
-                and crest_of(plan, after) > crest_of(plan, dam) - 0.5 * plan.cell,
+                and _whole(plan, after, behind) >= _whole(plan, dam, behind - 1),
         }  # fmt: skip
         faults = [text for text, so in why.items() if so]
         if not faults and (q := peak_discharge(case)) > 0.0:
@@ -62,6 +62,11 @@ def check_air(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError
                 )
         for text in faults:
             yield CaseError(f"water.row.dams.{k}.aerated", True, text)
+
+
+def _whole(plan: RowPlan, dam: RowDamSection, segment: int) -> int:
+    """Cells of a dam in a segment, as the water has it."""
+    return round((crest_of(plan, dam) - float(plan.bottom[segment])) / plan.cell)
 
 
 def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> list[ExplainRow]:

@@ -64,7 +64,8 @@ def _free_surface(case: Case, keys: RowSection, plan: RowPlan) -> list[tuple[str
     """Steep fronts, and waves over a loose bed."""
     said: list[tuple[str, str]] = []
     depth = (plan.start - plan.bottom).clip(0.0)
-    step = float(np.abs(np.diff(plan.start)).max(initial=0.0))
+    steps = np.minimum(np.abs(np.diff(np.maximum(plan.start, plan.bottom))), np.abs(np.diff(depth)))
+    step = float(steps.max(initial=0.0))
     if keys.surface is not None and step > 0.25 * float(depth.max()) > 0.0:
         said.append(("front", f"from a step of {100.0 * step:.3g} cm in the surface"))
     q = discharge_of(case)
@@ -83,6 +84,8 @@ def _pores(case: Case) -> list[tuple[str, str]]:
     water, phi, g = case.water, packed(case), case.motion.gravity
     drag = ergun_linear(phi, reference_diameter(case), water.viscosity)  # over the speed in the pores
     pull = (case.grains.density / water.density - 1.0) * g * phi
+    if not pull > 0.0:
+        return []
     fills = DILATES * thick * drag / ((1.0 - phi) ** 2 * pull)
     fall = math.sqrt(2.0 * thick / g)
     if fills < FALLS * fall:
