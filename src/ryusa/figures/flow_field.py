@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ryusa.figures import style
-from ryusa.figures.long_section import GROUND, SHARE, WATER
+from ryusa.figures.long_section import GROUND, WATER, largest_but_few
 from ryusa.measure._run import Floats
 from ryusa.measure.flow_field import FlowField
 
@@ -25,11 +25,16 @@ def flow_field(found: FlowField) -> Figure:
     x, own = found.x, found.pressure
     step = x[1] - x[0] if len(x) > 1 else 1.0
     edges, speed = np.append(x - 0.5 * step, x[-1] + 0.5 * step), np.hypot(found.u, found.w)
-    most, dz = _most(speed), found.z[0, 1] - found.z[0, 0]
+    most, dz = largest_but_few(speed), found.z[0, 1] - found.z[0, 0]
     if own is None:
         values, label, low, high, colours = speed, "speed  (m/s)", 0.0, most, "Blues"
     else:
-        values, label, high, colours = own, "pressure beyond the hydrostatic one  (Pa)", _most(own), "RdBu_r"
+        values, label, high, colours = (
+            own,
+            "pressure beyond the hydrostatic one  (Pa)",
+            largest_but_few(own),
+            "RdBu_r",
+        )
         low = -high
     # corners of cells; each segment has heights of its own, so that between two lies a strip without colour
     corners = np.column_stack([found.z - 0.5 * dz, found.z[:, -1] + 0.5 * dz])
@@ -102,9 +107,3 @@ def _arrows(axes: Axes, found: FlowField, most: float) -> None:
         labelpos="E",
         fontproperties={"size": 6.5},
     )
-
-
-def _most(values: Floats) -> float:
-    """What all but a few values do not exceed, without their sign; 1 where there are none, or all are 0."""
-    known = np.abs(values[np.isfinite(values)])
-    return float(np.quantile(known, SHARE)) or 1.0 if len(known) else 1.0

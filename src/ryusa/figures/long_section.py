@@ -304,21 +304,21 @@ def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
 def _bed_change(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
     scale, unit = _lengths(np.append(found.bed_change, 0.0))
     shown = found.bed_change * scale
-    most = _most(shown)
+    most = largest_but_few(shown)
     label = f"rise of the bed since {found.t[0]:.3g} s  ({unit})"
     _map(figure, axes, found, shown, label, side, cmap="BrBG_r", vmin=-most, vmax=most)
 
 
 def _transport(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
-    scale, unit = _per_width(np.array([_most(found.solid_discharge)]))
+    scale, unit = _per_width(np.array([largest_but_few(found.solid_discharge)]))
     shown = found.solid_discharge * scale
-    most = _most(shown)
+    most = largest_but_few(shown)
     label = f"grains  $q_s$  ({unit})"
     _map(figure, axes, found, shown, label, side, cmap="YlOrBr", vmin=0.0, vmax=most)
 
 
-def _most(values: Floats | Sequence[float]) -> float:
-    """What all but a few values do not exceed, without their sign; 1 where there are none."""
+def largest_but_few(values: Floats | Sequence[float]) -> float:
+    """What all but a few values do not exceed, without their sign; 1 where there are none or all are 0."""
     known = np.abs(np.asarray(values))
     known = known[np.isfinite(known)]
     return float(np.quantile(known, SHARE)) or 1.0 if len(known) else 1.0
