@@ -298,7 +298,7 @@ class ColumnRow(Flow):
 
     def refuses_grains(self, buoyancy: Buoyancy, period: float) -> tuple[str, ...]:
         """Reasons why it cannot carry grains of a period along x [m], one sentence each; () if it can."""
-        faults = [f"dam '{dam.name}', aerated: for water alone so far" for dam in self.dams if dam.aerated]
+        faults = list[str]()
         why = {
             Buoyancy.WEIGHT: "counts the slope of the surface twice",
             Buoyancy.PRESSURE: "lets still water among grains run down an inclined axis",

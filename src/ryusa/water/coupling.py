@@ -23,7 +23,7 @@ from ryusa.water import exchange_step as step
 from ryusa.water.closures import averaged
 from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Ints, weighted_concentration
+from ryusa.water.exchange import Ints, weighted_concentration, with_those_away
 from ryusa.water.exchange_arrays import ExchangeArrays, concentration_of_bed
 from ryusa.water.fixed_grains import steady_start
 from ryusa.water.momentum_balance import DONE, GRADIENT, SURFACE
@@ -87,7 +87,7 @@ class Coupling(Fluid):
         faults = column.refuses()
         if faults or column.interval < 1:
             raise ValueError("; ".join(faults) or f"an interval of {column.interval} steps: at least 1")
-        x, _ = _with_those_away(scene, column, x, x)
+        x, _ = with_those_away(scene, column.z_low, x, x)
         phi_bed = concentration_of_bed(scene, column)
         surface = column.z_surface if state is None else state.z_surface
         arrays = ExchangeArrays.of(
@@ -218,7 +218,7 @@ class Coupling(Fluid):
         WaterError : the water cannot be moved on, or drag acts faster than a step resolves.
         NotANumber : the height of a grain is not finite.
         """
-        x, v = _with_those_away(self.scene, self.column, x, v)
+        x, v = with_those_away(self.scene, self.column.z_low, x, v)
         dt, arrays = self.steps * self.scene.dt, self._arrays
         volume, t, count = self._about
         rows, faces = np.empty_like(self._rows), np.empty_like(self._faces)
@@ -336,15 +336,6 @@ class Coupling(Fluid):
             arrays.force_z, speeds, sampled,
         )  # fmt: skip
         return sampled
-
-
-def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Centres and velocities, with grains that are away (nan) at rest below the column, in no cell of it."""
-    if scene.traffic is None or not (away := np.isnan(x[:, 2])).any():
-        return x, v
-    x, v = np.where(away[:, None], 0.0, x), np.where(away[:, None], 0.0, v)
-    x[away, 2] = column.z_low - scene.d[away]
-    return x, v
 
 
 def _of_free_grains(arrays: ExchangeArrays, column: Column, processes: SharingProcesses | None) -> Floats:

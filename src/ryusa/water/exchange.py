@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.laws.slices import sphere_slice
-from ryusa.model.scene import Floats
+from ryusa.model.scene import Floats, Scene
 from ryusa.water._kernel import kernel
 
 Ints = NDArray[np.int64]
@@ -57,6 +57,18 @@ class Cells:
     def volume(self) -> float:
         """Of one cell [m3]."""
         return self.area * self.dz
+
+
+def with_those_away(
+    scene: Scene, z_low: float, x: Floats, v: Floats, x_rest: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Centres and velocities, with grains that are away (nan) at rest below z_low [m], in no cell of it."""
+    if scene.traffic is None or not (away := np.isnan(x[:, 2])).any():
+        return x, v
+    x, v = np.where(away[:, None], 0.0, x), np.where(away[:, None], 0.0, v)
+    x[away, 0] = x_rest
+    x[away, 2] = z_low - 2.0 * scene.d[away]
+    return x, v
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,18 @@ from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO
 from ryusa.water.row_energy import EnergyArrays
 from ryusa.water.row_inlet import NO_INFLOW
 from ryusa.water.row_layout import NappeArrays, RowEnds, RowGrains, RowMatrix, RowShape, RowWater
-from ryusa.water.row_nappe import BEYOND, STRIKES, air_of, closed, nappes_of, open_state, opened, with_air
+from ryusa.water.row_nappe import (
+    BEYOND,
+    STRIKES,
+    air_of,
+    behind_of,
+    closed,
+    nappes_of,
+    open_solid,
+    open_state,
+    opened,
+    with_air,
+)
 from ryusa.water.row_pressure import PressureArrays
 from ryusa.water.row_station import StationArrays
 from ryusa.water.row_step import ASTRAY, COURANT_MET, FAULT_AT, N_SCALARS, NOT_PROJECTED, STEPS
@@ -60,7 +71,7 @@ IN_A_ROW = {  # hints that differ from those of one column
 
 @dataclass(frozen=True)
 class GrainAction:
-    """Action of free grains on the water during a step; arguments of `advance`, with an axis of stations."""
+    """Action of free grains on the water during a step; of the opened row where it has aerated sills."""
 
     phi: Floats  # of all grains, fixed ones included, at the end of the step [-], shape (n_segment, n)
     force: Floats  # [N/m3], shape (n_station, n)
@@ -165,7 +176,8 @@ def advance_row(
     arrays, c, before = RowArrays.of(row) if arrays is None else arrays, row.column, state
     shape, nappe = arrays.shape, arrays.nappe
     if nappe is not None:
-        row, solid, state = open_state(row, solid, state)
+        solid = None if solid is None else open_solid(row, solid)
+        row, state = opened(row), open_state(row, state)
     stations = len(shape.left)
     matrix = _matrix_of(row, solid)
     given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)), laden=solid is not None)
@@ -221,7 +233,7 @@ def discharges(row: ColumnRow, state: RowState) -> Floats:
 
 def shape_of(row: ColumnRow) -> RowShape:
     """Geometry of a row as the compiled step takes it."""
-    air, row = air_of(row), opened(row)
+    air, shut, row = air_of(row), np.insert(row.cells_of_dams(), behind_of(row), 0), opened(row)
     n = row.n_segment
     bottom = row.bottom_with_ends()
     left, right = row.stations_between
@@ -238,8 +250,8 @@ def shape_of(row: ColumnRow) -> RowShape:
             kind[j] = INFLOW
     steep = 1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2
     shape = RowShape(
-        left, right, west, east, row.solid_cells(), row.cells_of_dams(), kind, bottom,
-        steep, steep if row.hydrostatic else np.ones(len(left)), not row.hydrostatic,
+        left, right, west, east, row.solid_cells(), shut, np.delete(np.arange(len(bottom)), air), kind,
+        bottom, steep, steep if row.hydrostatic else np.ones(len(left)), not row.hydrostatic,
         (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),
     )  # fmt: skip

@@ -19,7 +19,8 @@ from ryusa.water.exchange import FOUR, Ints
 from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
 from ryusa.water.row_grain_sums import MetByGrains
-from ryusa.water.row_layout import RowEnds, RowShape, RowWater
+from ryusa.water.row_layout import NappeArrays, RowEnds, RowShape, RowWater
+from ryusa.water.row_nappe import with_landing
 from ryusa.water.row_step import driving_gradient, fluxes_along
 from ryusa.water.row_sums import (
     BUOYED,
@@ -244,7 +245,7 @@ def meet_within_step(shape: RowShape, dt: float, rates: Floats, sums: Floats, to
 def tell(
     p: ColumnParameters, area: float, shape: RowShape, ends: RowEnds, dt: float, driver: float,
     sums: Floats, through: Floats, water: RowWater, flux: Floats, tilt: Floats, budgets: Floats,
-    told: RowTold,
+    told: RowTold, nappe: NappeArrays | None,
 ) -> None:  # fmt: skip
     """Complete what the grains are told, with what varies along the row.
 
@@ -256,6 +257,7 @@ def tell(
     flux, tilt : work arrays, as in `StationArrays`.
     budgets : of the last step.
     told : `stations` as the step wrote them, and `phi`; the rest is overwritten.
+    nappe : of an opened row, after its last step.
 
     Notes
     -----
@@ -271,13 +273,15 @@ def tell(
     periodic = len(shape.kind) == len(shape.bottom)
     for i in range(len(shape.bottom)):
         west, east = shape.west[i], shape.east[i]
-        below = 0.0
+        below, entering = 0.0, flux[west]
+        if nappe is not None:
+            entering = with_landing(shape, i, entering, water.wet[i], nappe)
         # grains do not pass a wall, an inlet, or the upper end of a row, where a screen holds them
         come = 1.0 if shape.kind[west] == OPEN and (periodic or i > 0) else 0.0
         go = 1.0 if shape.kind[east] == OPEN else 0.0
         for k in range(p.n):
             grains = go * through[east, k] / area - come * through[west, k] / area
-            more = flux[east, k] - flux[west, k] + grains
+            more = flux[east, k] - entering[k] + grains
             rise[i, k] = -(below + 0.5 * more) * per_dx
             below += more
             told.w[i, k] = 0.0

@@ -19,10 +19,11 @@ from ryusa.model.row import ColumnRow, PorousSolid, RowGrainState, RowState
 from ryusa.water import eddies
 from ryusa.water.at_grains import sample
 from ryusa.water.drive import imposed_gradient
-from ryusa.water.exchange import slices
+from ryusa.water.exchange import slices, with_those_away
 from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws, cells_of
 from ryusa.water.fixed_grains import steady_start
 from ryusa.water.row import GrainAction, RowArrays, advance_row, row_at_rest
+from ryusa.water.row_energy import N_ROW_TERM
 from ryusa.water.row_exchange import (
     DRIFT,
     SLOW,
@@ -45,6 +46,7 @@ from ryusa.water.row_exchange import (
 )
 from ryusa.water.row_grain_sums import MetByGrains, sum_grains_in_row
 from ryusa.water.row_layout import RowEnds, RowWater
+from ryusa.water.row_nappe import closed, hang, open_state, open_values
 from ryusa.water.row_pressure import find_rises
 from ryusa.water.row_pressure_grains import set_grains
 from ryusa.water.row_station import largest_residual
@@ -127,7 +129,7 @@ class GrainsInRow:
             raise ValueError("; ".join(faults))
         arrays, column = RowArrays.of(row), row.column
         p, shape = arrays.p, arrays.shape
-        x, _ = _with_those_away(scene, row, x, x)
+        x, _ = with_those_away(scene, row.bottom_with_ends().min(), x, x, row.x[0])
         stations, segments = len(shape.left), len(shape.bottom)
         there = np.flatnonzero(scene.fixed_active)
         cells, n = cells_of(column), len(x)
@@ -175,23 +177,20 @@ class GrainsInRow:
     ) -> "GrainsInRow":  # fmt: skip
         """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
         grains = GrainsInRow.begin(scene, row, np.array(found.x), state, threads)
-        grains.told.w[:], grains.told.force_z[:], grains.told.u_free[:] = found.w, found.force_z, found.u
+        told = grains.told
+        for into, one in ((told.w, found.w), (told.force_z, found.force_z), (told.u_free, found.u)):
+            into[:] = open_values(row, one)
         grains._sample(state)  # which notes what each grain met, for what it gives
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
 
     def snapshot(self) -> RowGrainState:
         """All that `resume` needs, beside the water and the water at the grains."""
-        told = self.told
-        kept = (
-            self.x.copy(),
-            told.w.copy(),
-            told.force_z.copy(),
-            told.u_free.copy(),
-        )
-        for one in kept:
+        x, told = self.x.copy(), self.told
+        w, force_z, u = (np.array(self._closed(one)) for one in (told.w, told.force_z, told.u_free))
+        for one in (x, w, force_z, u):
             one.flags.writeable = False
-        return RowGrainState(*kept, self.eddies)
+        return RowGrainState(x, w, force_z, u, self.eddies)
 
     def follow(self, ends: RowEnds) -> None:
         """Let other discharges and levels act at the ends from the next exchange on."""
@@ -232,14 +231,24 @@ class GrainsInRow:
             continue_ends(self._arrays.shape, sums)
             if places is self._bed_places:
                 self._bed.phi[:] = sums[SOLID] / volume
-                if self.solid is not None:
-                    self._bed.phi[:] += self.row.with_ends(self.solid.phi)
+                self._bed.phi[:] += self._porous()
         concentration_in_row(self._arrays.p, self._area, self._bed, sums, self.told.phi)
+
+    def _porous(self) -> Floats:
+        """Concentration of the porous solid in the cells of the opened row, ends included [-]."""
+        if self.solid is None:
+            return np.zeros_like(self.told.phi)
+        return open_values(self.row, self.row.with_ends(self.solid.phi))
+
+    def _closed(self, values: Floats) -> Floats:
+        """Values of the opened row as those of the row."""
+        nappe = self._arrays.nappe
+        return values if nappe is None else closed(values, nappe.air)
 
     @property
     def phi(self) -> Floats:
         """Concentration of grains in the segments, fixed ones included [-], shape (n_segment, n)."""
-        return self.told.phi[self.row.inner]
+        return self._closed(self.told.phi)[self.row.inner]
 
     @property
     def _yields(self) -> float:
@@ -262,15 +271,15 @@ class GrainsInRow:
         WaterError : no steady flow was found.
         """
         start, scene, column = self.at_rest(surface), self.scene, self.row.column
-        bed = self._bed.phi[self.row.inner].mean(axis=0)
+        bed = self._closed(self._bed.phi)[self.row.inner].mean(axis=0)
         free = self.phi.mean(axis=0) - bed
         every = np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]])
         flow = steady_start(column, scene.water, bed, free, float((every**3).sum() / (every**2).sum()))
         u, profiles, edges = np.array(start.u), np.array(start.profiles), np.array(start.edges)
         u[:] = flow.u
         profiles[:, 0], profiles[:, 3], profiles[:, 5] = flow.u, flow.shear, flow.dtau_dz
-        content = start.content
-        profiles[:, 2] = 0.5 * (content[self._arrays.shape.left] + content[self._arrays.shape.right])
+        left, right = self.row.stations_between
+        profiles[:, 2] = 0.5 * (start.content[left] + start.content[right])
         edges[:, 0], edges[:, 1] = flow.tau, flow.nu_t
         return replace(start, u=u, profiles=profiles, edges=edges)
 
@@ -295,7 +304,7 @@ class GrainsInRow:
         WaterError : the water cannot be moved on.
         """
         p, shape, told, row = self._arrays.p, self._arrays.shape, self.told, self.row
-        x, v = _with_those_away(self.scene, row, x, v)
+        x, v = with_those_away(self.scene, row.bottom_with_ends().min(), x, v, row.x[0])
         segments, stations = len(told.phi), len(told.u)
         sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
         through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
@@ -327,16 +336,18 @@ class GrainsInRow:
             set_grains(p, shape, self._area, self._yields * dt, sums, fixed, free_z, through, pressure.grains)
         state = advance_row(
             row, state, dt, solid=self._at_rest(), arrays=self._arrays,
-            grains=GrainAction(told.phi[row.inner], force, slope, np.zeros_like(force), phi_w),
+            grains=GrainAction(told.phi[slice(*shape.inner)], force, slope, np.zeros_like(force), phi_w),
         )  # fmt: skip
-        budgets = np.array(state.budgets)
-        split_budgets(p, shape, acts, _water_of(state), budgets)
+        now = open_state(row, state)
+        budgets = np.array(now.budgets)
+        split_budgets(p, shape, acts, _water_of(now), budgets)
+        budgets = self._closed(budgets)
         self.worst = max(self.worst, largest_residual(budgets))
         budgets.flags.writeable = False
         state = replace(state, budgets=budgets)
         self.fastest_grain = float(largest[RATE])
         slow = SLOW * p.nu / float(self._grains.d.mean()) if len(x) else 0.0
-        rates = rates_at_stations(p, self._area, self._laws, shape, sums, told, np.array(state.u), slow)
+        rates = rates_at_stations(p, self._area, self._laws, shape, sums, told, np.array(now.u), slow)
         water = fastest_in_row(p, self._area, self._laws, sums, told.phi)
         self.fastest = max(water, float(rates.max()), self.fastest_grain)
         if self.eddies is not None:
@@ -349,24 +360,27 @@ class GrainsInRow:
 
     def _at_rest(self) -> PorousSolid | None:
         """All that does not move in the cells; its drag is that of the porous solid alone."""
-        phi = self._bed.phi[self.row.inner]
+        phi = self._closed(self._bed.phi)[self.row.inner]
         if self.solid is not None:
             return self.solid if self._bed.taken else replace(self.solid, phi=phi)
         return None if self._bed.taken or not phi.any() else PorousSolid(phi, 0.0 * phi, 0.0 * phi)
 
     def _tell(self, state: RowState, sums: Floats, through: Floats, dt: float) -> None:
         """Note what the grains meet in the next interval."""
-        told, water, arrays = self.told, _water_of(state), self._arrays
+        state, told, arrays = open_state(self.row, state), self.told, self._arrays
+        water = _water_of(state)
         told.stations[:] = state.profiles
+        hang(arrays.p, arrays.shape, water, False, arrays.nappe, np.zeros(N_ROW_TERM))
         inner = arrays.shape.inner[0]
         driver = imposed_gradient(arrays.p, water.content[inner], float(water.surface[inner]))
         tell(
             arrays.p, self._area, arrays.shape, arrays.ends, dt, float(driver), sums, through, water,
-            np.zeros_like(told.u), np.zeros(len(told.phi)), np.array(state.budgets), told,
+            np.zeros_like(told.u), np.zeros(len(told.phi)), np.array(state.budgets), told, arrays.nappe,
         )  # fmt: skip
 
     def _sample(self, state: RowState) -> None:
         """Write the water at every grain."""
+        state = open_state(self.row, state)
         p, shape, told, laws = self._arrays.p, self._arrays.shape, self.told, self._laws
         turbulence = np.zeros((0, *told.u.shape))
         if self.eddies is not None:
@@ -375,8 +389,7 @@ class GrainsInRow:
         if (own := self._arrays.pressure) is not None and state.pressure is not None:
             own.p[:], c_m = state.pressure, float(self.scene.water.c_m)
             find_rises(p, shape, np.array(state.wet), own)
-            solid = np.zeros_like(told.phi) if self.solid is None else self.row.with_ends(self.solid.phi)
-            press_grains(p, shape, c_m, solid, told, own.push, own.within, own.top, table)
+            press_grains(p, shape, c_m, self._porous(), told, own.push, own.within, own.top, table)
 
         def tell_some(begin: int, end: int) -> None:
             some, these = slice(begin, end), self.eddies
@@ -397,16 +410,6 @@ class GrainsInRow:
             self.threads.share(equal_parts(len(self._z), parts), tell_some)
         else:
             tell_some(0, len(self._z))
-
-
-def _with_those_away(scene: Scene, row: ColumnRow, x: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Centres and velocities, with grains that are away (nan) at rest below the row, in no cell of it."""
-    if scene.traffic is None or not (away := np.isnan(x[:, 2])).any():
-        return x, v
-    x, v = np.where(away[:, None], 0.0, x), np.where(away[:, None], 0.0, v)
-    x[away, 0] = row.x[0]
-    x[away, 2] = row.bottom_with_ends().min() - 2.0 * scene.d[away]
-    return x, v
 
 
 def _water_of(state: RowState) -> RowWater:

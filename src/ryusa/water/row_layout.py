@@ -15,6 +15,7 @@ class RowShape(NamedTuple):
     east: Ints  # station at its downstream end
     first: Ints  # lowest cell of each segment that is not solid, shape (n_segment,)
     shut: Ints  # lowest cell of each segment that grains can be in, above dams that seep too
+    bed: Ints  # the segments from upstream on, ends included, but for those of air behind aerated sills
     kind: Ints  # OPEN, WALL or INFLOW of each station, shape (n_station,)
     bottom: Floats  # height of the bottom of each segment [m], shape (n_segment,)
     steep: Floats  # 1 + tan**2 of the angle between bottom and x axis at each station [-]

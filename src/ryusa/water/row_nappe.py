@@ -64,27 +64,33 @@ def with_air(shape: RowShape, air: Ints) -> RowShape:
     return shape
 
 
-def open_state(
-    row: ColumnRow, solid: PorousSolid | None, state: RowState
-) -> tuple[ColumnRow, PorousSolid | None, RowState]:
-    """A row with aerated sills, a porous solid in it and its state as those of the opened row."""
+def open_values(row: ColumnRow, values: Floats) -> Floats:
+    """Values of the segments or stations of a row, and 0 in the air and at the walls of the opened row."""
     behind = behind_of(row)
+    return np.insert(values, behind, 0.0, axis=0) if len(behind) else values
 
-    def with_rows(values: Floats) -> Floats:
-        return np.insert(values, behind, 0.0, axis=0)
 
-    if solid is not None:
-        inner = (np.insert(one, behind - row.inner.start, 0.0, axis=0) for one in vars(solid).values())
-        solid = PorousSolid(*inner)
-    names = ("u", "volume", "content", "wet", "surface", "passed", "edges", "w", "pressure")
-    found = {name: with_rows(one) for name in names if (one := getattr(state, name)) is not None}
-    found["surface"][air_of(row)] = row.column.z_low
-    return opened(row), solid, replace(state, **found)
+def open_solid(row: ColumnRow, solid: PorousSolid) -> PorousSolid:
+    """A porous solid in a row with aerated sills as one in the opened row."""
+    behind = behind_of(row) - row.inner.start
+    return PorousSolid(*(np.insert(one, behind, 0.0, axis=0) for one in vars(solid).values()))
+
+
+def open_state(row: ColumnRow, state: RowState) -> RowState:
+    """The state of a row with aerated sills as that of the opened row; the state itself without any."""
+    air = air_of(row)
+    if not len(air):
+        return state
+    along = ("u", "passed", "edges", "profiles", "budgets")
+    names = (*along, "volume", "content", "wet", "surface", "w", "pressure")
+    found = {name: open_values(row, one) for name in names if (one := getattr(state, name)) is not None}
+    found["surface"][air] = row.column.z_low
+    return replace(state, **found)
 
 
 def closed(values: Floats, air: Ints) -> Floats:
     """Values of the segments or stations of an opened row without those of air and the walls behind."""
-    return np.delete(values, air, axis=0)
+    return np.delete(values, air, axis=0) if len(air) else values
 
 
 @kernel

@@ -86,8 +86,9 @@ def place_grains(x: Floats, x_low: float, z_low: float, shape: RowShape, places:
     What a grain near an open end would give to segments beyond it, the last segment takes; beyond the end it
     counts as lying there.
     """
-    first, n = shape.inner[0], shape.inner[1] - shape.inner[0]
-    periodic = n == len(shape.bottom)
+    first, bed = shape.inner[0], shape.bed
+    n = len(bed) - 2 * first
+    periodic = first == 0
     shared = places.at.shape[1]
     for i in range(len(x)):
         s = (x[i] - x_low) / shape.dx
@@ -99,8 +100,9 @@ def place_grains(x: Floats, x_low: float, z_low: float, shape: RowShape, places:
         if not periodic:
             cell = min(cell, n - 1)
         t = s - cell - 0.5
-        middle = first + int(cell % n)
-        places.gate[i, 0], places.gate[i, 1] = shape.west[middle], shape.east[middle]
+        middle = bed[first + int(cell % n)]
+        # over an aerated sill grains leave through its last station, although the pool begins at a wall
+        places.gate[i, 0], places.gate[i, 1] = shape.east[bed[first + int(cell % n) - 1]], shape.east[middle]
         places.past[i] = t + 0.5
         if shared == 1:
             places.at[i, 0], places.weight[i, 0] = middle, 1.0
@@ -113,9 +115,9 @@ def place_grains(x: Floats, x_low: float, z_low: float, shape: RowShape, places:
         for b in range(shared):
             one = cell + b - 1
             if periodic:
-                here = below = int(one % n)
+                here = below = bed[int(one % n)]
             else:
-                here, below = first + int(min(max(one, 0), n - 1)), first + int(one)
+                here, below = bed[first + int(min(max(one, 0), n - 1))], bed[first + int(one)]
             places.at[i, b] = here
             places.shut[i, b] = shape.shut[here] if here != middle else 0
             base += places.weight[i, b] * shape.bottom[below]

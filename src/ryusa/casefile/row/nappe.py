@@ -7,7 +7,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import levels_of, peak_discharge
 from ryusa.casefile.row.schema import RowDamSection, RowSection
-from ryusa.casefile.row.values import RowPlan, crest_of, critical_depth, dam_span, water_alone
+from ryusa.casefile.row.values import RowPlan, crest_of, critical_depth, dam_span
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.errors import CaseError
 from ryusa.laws.families import Pressure
@@ -42,7 +42,6 @@ def check_air(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError
         why = {
             f'needs water.row.pressure = "{Pressure.FULL.word}": hydrostatic water does not fall freely':
                 keys.pressure != Pressure.FULL.word,
-            "is for water alone so far": not water_alone(case),
             "has no place in a periodic row: give water.row.upstream and downstream":
                 keys.upstream is None or keys.downstream is None,
             "has no effect on a dam that lets water through: it leaves below the crest":
