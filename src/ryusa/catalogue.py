@@ -197,8 +197,7 @@ MEASURES = (
                  (*WINDOW, "window"), settled=True, fed=True, clumps=True, grainless=True,
                  needs=("row", "structures")),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
-                 "grains that do not come to rest",
-                 (*WINDOW, "window"), printing=("threshold",), table=True),
+                 "grains that do not come to rest", (*WINDOW, "window"), printing=("threshold",), table=True),
     MeasureEntry("surface", "ryusa.measure.repose:surface",
                  "free surface of a heap: slope, height, run-out", ("t", "side"),
                  builders=("box", "empty"), fed=True,
@@ -264,6 +263,10 @@ MEASURES = (
                  "front of the grains that came in or have moved: place and speed",
                  WINDOW, settled=True, builders=("stream",), fed=True, clumps=True,
                  numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
+    MeasureEntry("scour", "ryusa.measure.scour:scour",
+                 "scour below a dam in a row of columns: depth, place, length, volume, head, tail water",
+                 ("dam", *WINDOW), settled=True, fed=True, clumps=True,
+                 numbers=(("depth", "m"), ("volume", "m2")), needs=("row", "structures", "open")),
 )  # fmt: skip
 
 
@@ -287,8 +290,7 @@ def picture_of(
 
 PICTURES = (
     PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
-                 ("t", "colour", "lane"),
-                 builders=EVERY_BUILDER, fed=True, clumps=True),
+                 ("t", "colour", "lane"), builders=EVERY_BUILDER, fed=True, clumps=True),
     PictureEntry("forces", "ryusa.figures.runs:forces",
                  "network of contact forces at one moment, as lines between centres", ("t", "lane"),
                  builders=("box", "packing"), clumps=True),
@@ -303,8 +305,7 @@ PICTURES = (
     PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True,
                  builders=("saltation",)),
     PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
-                 WINDOW, settled=True,
-                 builders=("flume", "packing"), clumps=True),
+                 WINDOW, settled=True, builders=("flume", "packing"), clumps=True),
     picture_of("water", "ryusa.figures.water:water",
                "velocity, concentration and shear stress over height"),
     PictureEntry("transport", "ryusa.figures.runs:transport",

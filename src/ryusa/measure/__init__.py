@@ -26,6 +26,7 @@ from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
+from ryusa.measure.scour import Scour, scour
 from ryusa.measure.shear_zone import ShearZone, shear_zone
 from ryusa.measure.sizes import Sizes, sizes
 from ryusa.measure.snapshot import Bounds, Snapshot, bounds, snapshot
@@ -78,6 +79,7 @@ __all__ = [
     "Rod",
     "Rods",
     "Saltation",
+    "Scour",
     "ShearZone",
     "Sizes",
     "Snapshot",
@@ -122,6 +124,7 @@ __all__ = [
     "rods",
     "rows_of",
     "saltation",
+    "scour",
     "shear_zone",
     "sizes",
     "snapshot",
