@@ -183,9 +183,12 @@ def test_a_long_section_has_the_stress_of_the_flow_up_to_the_inlet(weir: Results
     assert tau[0] == pytest.approx(tau[1], rel=0.5)  # half of it with the inlet's own, 0
 
 
-def test_a_film_of_water_alone_is_that_of_its_long_section(weir: Results, tmp_path: Path) -> None:
+@pytest.mark.parametrize("view", [None, "flow_field"])
+def test_a_film_of_water_alone_is_that_of_its_long_section_or_its_flow_field(
+    weir: Results, tmp_path: Path, view: str | None
+) -> None:
     path = tmp_path / "film.webp"
-    made = film(weir, path, frames=3, size=(640, 360))
+    made = film(weir, path, frames=3, size=(640, 360), view=view)
     with Image.open(path) as pictures:
         assert (pictures.n_frames, pictures.size) == (3, (640, 360))
         first = np.asarray(pictures.convert("RGB"))
@@ -196,8 +199,10 @@ def test_a_film_of_water_alone_is_that_of_its_long_section(weir: Results, tmp_pa
     assert apart.any()  # the water moves
     assert not apart[:, : 640 // 24].any()  # axes and their labels do not
     for key, value in (("colour", "spin"), ("follow", 0)):
-        with pytest.raises(CaseError, match="is of films of grains"):
-            film(weir, path, **{key: value})
+        with pytest.raises(CaseError, match=f"is of films of grains; {view or 'long_section'} has none"):
+            film(weir, path, view=view, **{key: value})
+    with pytest.raises(CaseError, match="is of films of long sections"):
+        film(weir, path, view="flow_field", bed="rest")
     with pytest.raises(ResultsError, match="has no free grains"):
         film(weir, path, view="side")
 

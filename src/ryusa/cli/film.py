@@ -28,8 +28,8 @@ def film(
         str | None,
         typer.Option(
             metavar="VIEW",
-            help="oblique, side or top, or long_section of a row of columns; default oblique, for a plane "
-            "scene side, for water alone long_section.",
+            help="oblique, side or top, or long_section or flow_field of a row of columns; default oblique, "
+            "for a plane scene side, for water alone long_section.",
         ),
     ] = None,
     colour: Annotated[
@@ -63,7 +63,7 @@ def film(
     ] = None,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
-    """Write a film of the grains of a run, or of its long section; needs no display and no graphics card.
+    """Write a film of the grains of a run, or of its water along a row; needs no display, no graphics card.
 
     Scale, box and colours are the same in all pictures; the time and the speed of the film are written in
     each. Between two recorded frames grains are drawn on straight lines. A run that is still being written is

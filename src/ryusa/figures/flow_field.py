@@ -1,5 +1,7 @@
 """Speeds and pressure of the water within a row of columns."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,26 +17,33 @@ SMALL = 1.0e-9  # speed below which water is at rest [m/s]
 
 
 @style.house
-def flow_field(found: FlowField) -> Figure:
+def flow_field(
+    found: FlowField, among: Sequence[FlowField] = (), *, height: float = 3.0, words: str | None = None
+) -> Figure:
     """Draw arrows of the speed over colours of the pressure, or of the speed where it is hydrostatic.
 
     Heights are over the x axis and normal to it. Arrows point along the path on the picture, whatever its
     scales, and are as long as the speed.
+
+    Parameters
+    ----------
+    among : other moments of the same run that axes and scales cover too, as in a film.
+    height : of the figure [inch].
+    words : above the figure, in place of the time in it.
     """
-    figure, axes = style.new(1, width=style.PAGE, height=3.0)
+    figure, axes = style.new(1, width=style.PAGE, height=height)
+    every = (found, *among)
     x, own = found.x, found.pressure
     step = x[1] - x[0] if len(x) > 1 else 1.0
     edges, speed = np.append(x - 0.5 * step, x[-1] + 0.5 * step), np.hypot(found.u, found.w)
-    most, dz = largest_but_few(speed), found.z[0, 1] - found.z[0, 0]
+    most = largest_but_few(np.concatenate([np.hypot(one.u, one.w).ravel() for one in every]))
+    dz = found.z[0, 1] - found.z[0, 0]
     if own is None:
         values, label, low, high, colours = speed, "speed  (m/s)", 0.0, most, "Blues"
     else:
-        values, label, high, colours = (
-            own,
-            "pressure beyond the hydrostatic one  (Pa)",
-            largest_but_few(own),
-            "RdBu_r",
-        )
+        values, label, colours = own, "pressure beyond the hydrostatic one  (Pa)", "RdBu_r"
+        pressures = [one.pressure.ravel() for one in every if one.pressure is not None]
+        high = largest_but_few(np.concatenate(pressures))
         low = -high
     # corners of cells; each segment has heights of its own, so that between two lies a strip without colour
     corners = np.column_stack([found.z - 0.5 * dz, found.z[:, -1] + 0.5 * dz])
@@ -47,15 +56,19 @@ def flow_field(found: FlowField) -> Figure:
     )  # fmt: skip
     figure.colorbar(drawn, ax=axes[0], label=label, pad=0.02, extend="max" if own is None else "both")
     _lines(axes[0], found, edges)
-    low, high = 100.0 * float(found.floor.min()), 100.0 * float(np.maximum(found.surface, found.bed).max())
+    low = 100.0 * float(found.floor.min())
+    high = 100.0 * max(float(np.maximum(one.surface, one.bed).max()) for one in every)
     axes[0].set_xlim(edges[0], edges[-1])
     axes[0].set_ylim(low - 0.03 * (high - low), high + 0.06 * (high - low))
     axes[0].set_xlabel("distance along the row  $x$  (m)")
     axes[0].set_ylabel("height over the x axis  (cm)")
-    axes[0].annotate(
-        f"t = {found.t:.4g} s", (0, 1), (0, 3), xycoords="axes fraction", textcoords="offset points",
-        fontsize=7.0,
-    )  # fmt: skip
+    if words is None:
+        axes[0].annotate(
+            f"t = {found.t:.4g} s", (0, 1), (0, 3), xycoords="axes fraction", textcoords="offset points",
+            fontsize=7.0,
+        )  # fmt: skip
+    else:
+        figure.suptitle(words, fontsize=8.0)
     style.legend_above(axes[0], 3, loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=6.5)
     figure.draw_without_rendering()  # lays the axes out
     _arrows(axes[0], found, most)

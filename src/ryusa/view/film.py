@@ -19,7 +19,7 @@ from ryusa.view.colouring import COLOURINGS, Colouring, value_range
 from ryusa.view.film_file import check, write
 from ryusa.view.margins import inner_size, margins
 from ryusa.view.picture import Look, Painter
-from ryusa.view.section_film import SECTION, section_pictures
+from ryusa.view.section_film import FIELD, SECTION, section_pictures
 
 SECONDS = 10.0  # about what a film lasts, unless asked otherwise
 FPS = 25.0
@@ -75,8 +75,8 @@ def film(
     Parameters
     ----------
     path : its suffix is one of `film_file.SUFFIXES`; a file that is there is replaced once the film is whole.
-    view : "oblique", "side" or "top" of the grains, or "long_section" of a row of columns; default oblique,
-        for a plane scene side, and the long section of water alone.
+    view : "oblique", "side" or "top" of the grains, or "long_section" or "flow_field" of a row of columns;
+        default oblique, for a plane scene side, and the long section of water alone.
     colour : a word of `COLOURINGS`; default "speed".
     begin, end : window of time shown [s]; default all frames.
     frames, speed : number of pictures, or time of the run over that of the film; default a round speed at
@@ -91,8 +91,8 @@ def film(
     -----
     The pictures are evenly spaced in time. Between two recorded frames grains are on straight lines, as in
     the page of `ryusa view`; nothing is shown before the first or after the last. Box, length scale and
-    colours are the same in all pictures. A long section is that of the nearest frame, on axes that are the
-    same in all pictures.
+    colours are the same in all pictures. A long section or flow field is that of the nearest frame,
+    on axes that are the same in all pictures.
 
     Raises
     ------
@@ -102,15 +102,17 @@ def film(
     if view is None:
         alone = results.row is not None and not results.scene.n_grain
         view = SECTION if alone else "side" if results.scene.plane_case else "oblique"
-    _known("view", view, (*VIEWS, SECTION))
+    _known("view", view, (*VIEWS, SECTION, FIELD))
     for axis in range(2):
         if not SMALLEST[axis] <= size[axis] <= LARGEST[axis]:
             allowed = f"must be {SMALLEST[0]}x{SMALLEST[1]} to {LARGEST[0]}x{LARGEST[1]}"
             raise CaseError("size", f"{size[0]}x{size[1]}", allowed)
-    if view == SECTION:
-        _left_out("is of films of grains; a long section has none", colour=colour, follow=follow)
-        return _of_section(results, path, begin, end, frames, speed, fps, size, bed or "packed", progress)
-    _left_out("is of films of long sections: view = 'long_section'", bed=bed)
+    if view != SECTION:
+        _left_out("is of films of long sections: view = 'long_section'", bed=bed)
+    if view in (SECTION, FIELD):
+        _left_out(f"is of films of grains; {view} has none", colour=colour, follow=follow)
+        seen = bed or "packed"
+        return _of_section(results, path, view, begin, end, frames, speed, fps, size, seen, progress)
     needs_grains(results)
     one = _colouring(colour or "speed")
     if follow is not None and results.scene.traffic is not None:
@@ -166,16 +168,16 @@ def _left_out(why: str, **given: object) -> None:
 
 
 def _of_section(
-    results: Results, path: Path, begin: float, end: float, frames: int | None, speed: float | None,
-    fps: float, size: tuple[int, int], bed: Bed, progress: Callable[[float], None],
+    results: Results, path: Path, view: str, begin: float, end: float, frames: int | None,
+    speed: float | None, fps: float, size: tuple[int, int], bed: Bed, progress: Callable[[float], None],
 ) -> Timing:  # fmt: skip
-    """Write a film of the long section; parameters as of `film`."""
+    """Write a film of the long section or the flow field; parameters as of `film`."""
     made = _planned(results.frames.t[_window(results, begin, end)], frames, speed, fps)
     check(path, size, len(made.times))
     title, digits = _title(results), _digits(made.speed / fps)
     pictures = section_pictures(
-        results, made.times, size, lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time",
-        bed,
+        results, view, made.times, size,
+        lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time", bed,
     )  # fmt: skip
     return _written(path, pictures, made, progress)
 

@@ -1,31 +1,35 @@
-"""The long section of a row of columns as a film: the same axes in all pictures."""
+"""The long section of a row of columns, or its flow field, as a film: the same axes in all pictures."""
 
 from collections.abc import Callable
 
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
 from ryusa.errors import ResultsError
-from ryusa.figures import long_section as figures
+from ryusa.figures import flow_field as fields
+from ryusa.figures import long_section as sections
 from ryusa.figures import style
+from ryusa.measure.flow_field import flow_field
 from ryusa.measure.long_section import Bed, long_section
 from ryusa.results import Results
 from ryusa.view.box import Floats
 
-SECTION = "long_section"  # the word for it, beside those of `camera.VIEWS`
+SECTION, FIELD = "long_section", "flow_field"  # the words for them, beside those of `camera.VIEWS`
 
 
 def section_pictures(
-    results: Results, times: Floats, size: tuple[int, int], words: Callable[[float], str], bed: Bed
+    results: Results, view: str, times: Floats, size: tuple[int, int], words: Callable[[float], str], bed: Bed
 ) -> Callable[[int], Image.Image]:
-    """What draws picture k of a film of the long section.
+    """What draws picture k of a film of the long section or the flow field.
 
     Parameters
     ----------
+    view : SECTION or FIELD.
     times : of the pictures [s], shape (n_picture,); each shows the frame nearest to it.
     size : width and height [pixel].
     words : above a picture, given its time.
-    bed : what ends the bed, as of `measure.long_section`.
+    bed : what ends the bed of a long section, as of `measure.long_section`.
 
     Raises
     ------
@@ -33,16 +37,20 @@ def section_pictures(
     ResultsError : the run has no row of columns.
     """
     if results.row is None:
-        raise ResultsError(f"{results.folder}: has no row of columns, whose long section could be shown")
+        raise ResultsError(f"{results.folder}: has no row of columns, whose {view} could be shown")
     recorded = np.asarray(results.frames.t, dtype=np.float64)
     nearest = np.abs(recorded[:, None] - times).argmin(axis=0)
-    sections = {int(k): long_section(results, float(recorded[k]), bed) for k in np.unique(nearest)}
-    among, dpi = tuple(sections.values()), size[0] / style.PAGE
+    dpi, shown = size[0] / style.PAGE, [int(k) for k in np.unique(nearest)]
+    drawn_by: Callable[..., Figure]
+    if view == FIELD:
+        drawn_by, moments = fields.flow_field, {k: flow_field(results, float(recorded[k])) for k in shown}
+    else:
+        drawn_by = sections.long_section
+        moments = {k: long_section(results, float(recorded[k]), bed) for k in shown}
+    among = tuple(moments.values())
 
     def draw(k: int) -> Image.Image:
-        figure = figures.long_section(
-            sections[int(nearest[k])], among, height=size[1] / dpi, words=words(float(times[k]))
-        )
+        figure = drawn_by(moments[int(nearest[k])], among, height=size[1] / dpi, words=words(float(times[k])))
         figure.set_dpi(dpi)
         canvas = figure.canvas
         canvas.draw()
