@@ -278,7 +278,8 @@ def test_a_pillow_without_avif_names_what_it_can_write(three, tmp_path, monkeypa
         (["-o", "film.mov"], "--output = 'film.mov': must end in .webp, .avif, .gif or .mp4"),
         (
             ["--view", "sde"],
-            "--view = 'sde': must be one of oblique, side, top, long_section, flow_field. Did you mean 'side'?",
+            "--view = 'sde': must be one of oblique, side, top, long_section, flow_field. Did you "
+            "mean 'side'?",
         ),
         (["--colour", "sped"], "Did you mean 'speed'?"),
         (["--size", "1280"], "--size = '1280': must be width and height in pixels, such as 1280x720"),
