@@ -1,5 +1,7 @@
 """What `ryusa check` says of the pressure of a row."""
 
+import math
+
 import pytest
 
 from ryusa.casefile import explain, read
@@ -46,3 +48,12 @@ def test_segments_that_do_not_resolve_a_crest_are_said():
     assert "take water.row.segment = 1.7 cm" in said("weir", FINE, water__row__pressure="full")[1]
     fine = {"water__row__pressure": "full", "water__row__segment": "1.25 cm"}
     assert said("weir", FINE, **fine) == ("", "")
+
+
+def test_check_warns_of_segments_on_which_single_grains_drive_the_water():
+    name, narrow = "grains on a segment", {"water__row__width": "9.7 mm", "feeds__0__high__1": "9.7 mm"}
+    value, origin = said("sabo_dam", name, **narrow)
+    assert float(value) == pytest.approx(0.025 * 0.0097 / (0.25 * math.pi * 0.008**2))
+    assert "eddies of single grains" in origin
+    assert said("sabo_dam", name) == ("", "")
+    assert said("sabo_dam", name, **narrow, water__column__fluctuations="none") == ("", "")

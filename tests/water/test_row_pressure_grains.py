@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from tests.water.test_row_grains import WALLS, D, G, advance_together, cloud, column_of, lattice
 
-from ryusa.laws.families import BedKind, Hindrance, Lift, Mixing, Pressure
+from ryusa.laws.families import BedKind, Fluctuations, Hindrance, Lift, Mixing, Pressure
+from ryusa.model.fluid import DRAG, N_IMPULSE, W
 from ryusa.model.row import ColumnRow
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.water import momentum_balance as m
 from ryusa.water.row_coupling import RowCoupling
+from ryusa.water.row_grain_sums import amounts_given
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_layout import RowWater
 from ryusa.water.row_pressure import divide_among_faces, find_rises
@@ -207,3 +209,25 @@ def test_a_grain_that_enters_the_water_is_not_thrown_back():
     assert np.abs(told[:, 6:8]).max() < 3.0 * weight[0]
     assert (still := replace(water, row=replace(row, pressure=Pressure.HYDROSTATIC)).among(at, 7)).due == 8
     assert still.steps == 1
+
+
+def test_turbulent_fluctuations_give_the_water_nothing_upwards():
+    """Their drag would be balanced by the normal stress of the turbulence, which W has not."""
+    made, row, start, v, _ = shaken()
+    turbulent = replace(row, column=replace(row.column, fluctuations=Fluctuations.RANDOM_WALK, seed=3))
+    *_, (grains, _, _, speeds, _) = advance_together(made, turbulent, start, 6, v)
+    taken = np.zeros((len(v), N_IMPULSE))
+    taken[:, DRAG] = 1e-3
+    taken[:, 2] = 1e-3 * (grains.sampled[:, W] - speeds[:, 2]) * 1e-3  # over an interval of 1 ms
+    eddies = grains.sampled[:, W] - grains._met.w
+    assert np.abs(eddies).max() > 1e-3
+    shape, cut = grains._arrays.shape, grains._cut
+    with_grains = taken, grains.sampled, grains._met, grains._grains, cut, 1e3
+    given = amounts_given(shape, *with_grains)[:, 1]
+    volume = grains._grains.solid * grains._met.submerged / cut.whole
+    by_mean = 1e-3 * (grains._met.w - speeds[:, 2]) + volume * grains._met.moves
+    assert given == pytest.approx(by_mean, abs=1e-15)
+    with_all = amounts_given(
+        shape._replace(own=False), taken, grains.sampled, grains._met, grains._grains, cut, 1e3
+    )
+    assert with_all[:, 1] == pytest.approx(taken[:, 2] * 1e3, abs=1e-15)

@@ -400,5 +400,6 @@ def means_at_grains(
         if shape.own:
             met.push[i], met.moves[i] = at[i, PUSH], at[i, MOVES]
         at[i, 1] += at[i, 0] * places.tilt[i]
+        met.w[i] = at[i, 1]
         at[i, 5] += met.gradient[i]
     return at

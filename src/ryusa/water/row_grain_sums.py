@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.model.fluid import DRAG
+from ryusa.model.fluid import DRAG, W
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import given_by_grains
@@ -32,11 +32,12 @@ class MetByGrains(NamedTuple):
     gradient: Floats  # pressure gradient [Pa/m]
     push: Floats  # force along x by the pressure of its own that a row may have [N/m3]
     moves: Floats  # and upwards on the added mass, by water that accelerates [N/m3]
+    w: Floats  # then: mean speed of the water upwards, without turbulent fluctuations [m/s]
 
     @staticmethod
     def of(n_grain: int) -> "MetByGrains":
         """Arrays for a number of grains, not filled."""
-        return MetByGrains(*np.zeros((6, n_grain)))
+        return MetByGrains(*np.zeros((7, n_grain)))
 
 
 @kernel
@@ -46,7 +47,9 @@ def amounts_given(
 ) -> Floats:  # fmt: skip
     """What each grain gives to the water, averaged over an interval, shape (n_grain, N_GIVEN).
 
-    A pressure of its own pushes water and grains each by their share, so that its push is nothing given.
+    A pressure of its own pushes water and grains each by their share, so that its push is nothing given. Then
+    turbulent fluctuations give nothing upwards either: W has no normal stress of the turbulence, whose rise
+    would balance their drag, and above all that of their drift where the turbulence ends at the surface.
     """
     amounts = np.zeros((len(met.u), N_GIVEN))
     four = given_by_grains(impulse, met.u, grains.archimedes, sampled, per_dt)
@@ -59,7 +62,7 @@ def amounts_given(
         if shape.own:
             volume = grains.solid[i] * met.submerged[i] / cut.whole[i]
             amounts[i, 0] -= volume * met.push[i]
-            amounts[i, 1] += volume * met.moves[i]
+            amounts[i, 1] += volume * met.moves[i] - impulse[i, DRAG] * (sampled[i, W] - met.w[i])
     return amounts
 
 
