@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.model.near_pairs import ROUND_OFF
 from ryusa.model.scene import Bools, Floats, Scene
 from ryusa.model.wall_shape import ways_to_faces
 from ryusa.model.walls import (
@@ -150,9 +151,8 @@ def _near_faces(x: Floats, scene: Scene, t: float, gap: float, here: Ints) -> tu
     assert walls is not None
     low, high = face_boxes(walls.face, walls.kind)
     middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1)
-    places = np.zeros_like(middle)
-    for w in range(walls.n_wall):
-        turn, shift = pose(walls.motion[w], t)
+    places, poses = np.zeros_like(middle), [pose(row, t) for row in walls.motion]
+    for w, (turn, shift) in enumerate(poses):
         places[walls.wall == w] = middle[walls.wall == w] @ turn.T + shift
     box = np.array([p if math.isfinite(p) else 0.0 for p in (*scene.period, math.inf)])
     own = x[here].copy()
@@ -166,7 +166,13 @@ def _near_faces(x: Floats, scene: Scene, t: float, gap: float, here: Ints) -> tu
     for f in np.flatnonzero(walls.active[walls.wall]):
         widest = 0.5 * box[box > 0.0].min() if box.any() else math.inf
         inside = reach[f] + most < widest
-        near = here[tree.query_ball_point(places[f], reach[f] + most)] if inside else here
+        near = here[tree.query_ball_point(places[f], reach[f] + most) if inside else slice(None)]
+        turn, shift = poses[walls.wall[f]]
+        at = (x[near] - shift) @ turn - middle[f]  # from the middle of its box, along the axes of its wall
+        for axis in np.flatnonzero(box):
+            at[:, axis] -= box[axis] * np.round(at[:, axis] / box[axis])
+        beyond = np.maximum(np.abs(at) - 0.5 * (high[f] - low[f]), 0.0)  # few grains are near a large box
+        near = near[np.linalg.norm(beyond, axis=1) <= (0.5 + gap) * scene.d[near] * (1.0 + ROUND_OFF)]
         grains.append(np.asarray(near, np.int64))
         faces.append(np.full(len(near), f))
     return np.concatenate(grains), np.concatenate(faces)
