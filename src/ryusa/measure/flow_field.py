@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.long_section import bed_line, between_stations, dams_of, row_of
 from ryusa.measure.table import lines
+from ryusa.results.water import WaterFrames
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,18 +69,28 @@ def flow_field(run: Run, t: float | None = None) -> FlowField:
     row = found.row
     n, dz = row.column.n, row.column.dz
     low = row.bottom[:, None] + np.arange(n) * dz
-    water = found.content[k] > 0.0
     own = None
     if not row.hydrostatic:
-        full = water & (low + dz < found.surface[k][:, None])
+        full = (found.content[k] > 0.0) & (low + dz < found.surface[k][:, None])
         own = np.where(full, found.pressure[k], np.nan)
-    bottom, (before, after) = row.bottom_with_ends(), row.stations_between
-    rise = np.zeros(len(before)) if own is not None else (bottom[after] - bottom[before]) / row.dx
-    upwards = found.w[k] + rise[:, None] * found.u[k]  # a hydrostatic row has w over its inclined levels
-    u, w = (between_stations(row.periodic, one.T).T for one in (found.u[k], upwards))
-    u, w, phi = (np.where(water, one, np.nan) for one in (u, w, found.phi[k]))
+    u, w = speeds_in_cells(found, k)
+    phi = np.where(np.isfinite(u), found.phi[k], np.nan)
     bed = bed_line(run, found, np.array([k]), "packed")[0]
     surface = np.maximum(found.surface[k], found.floor)
     return FlowField(
         float(found.t[k]), row.x, low + 0.5 * dz, u, w, phi, own, surface, bed, found.floor, dams_of(row)
     )
+
+
+def speeds_in_cells(found: WaterFrames, k: int) -> tuple[Floats, Floats]:
+    """Speeds along the x axis and normal to it in the cells of a row in frame k [m/s], nan outside the water.
+
+    Each has the shape (n_segment, n_cell).
+    """
+    row = found.row
+    bottom, (before, after) = row.bottom_with_ends(), row.stations_between
+    rise = (bottom[after] - bottom[before]) / row.dx if row.hydrostatic else np.zeros(len(before))
+    upwards = found.w[k] + rise[:, None] * found.u[k]  # a hydrostatic row has w over its inclined levels
+    u, w = (between_stations(row.periodic, one.T).T for one in (found.u[k], upwards))
+    water = found.content[k] > 0.0
+    return np.where(water, u, np.nan), np.where(water, w, np.nan)

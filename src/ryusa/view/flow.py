@@ -12,6 +12,7 @@ from ryusa.laws.families import Profile
 from ryusa.model import Scene
 from ryusa.results import Results
 from ryusa.view.encode import Blob
+from ryusa.view.flow_arrows import add_arrows
 
 POINTS = 60  # of a profile that is given by a formula
 THIN = 1.0e-6  # depth up to which a segment of a row is dry [m]
@@ -100,7 +101,8 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
         water, or the mean along a row of columns, one row in all for a given profile; nan where there is no
         water. The surface is the array "surface" in m, one per frame, or one, or none where the depth is
         unbounded. Of a row of columns it is the mean depth above the lowest cell, and the array "line" holds
-        the surface in m at the places x, one row per frame; nan where it is dry.
+        the surface in m at the places x, one row per frame; nan where it is dry. Its `arrows` are those of
+        `add_arrows`.
     """
     found, line = results.row or results.water, surface_line(results)
     if found is not None:
@@ -115,7 +117,8 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
         if line is None:
             return {"z": column.z.tolist(), "solved": True}
         blob.add("line", line.z[frames].astype(np.float32))
-        return {"z": column.z.tolist(), "solved": True, "x": line.x.tolist()}
+        arrows = add_arrows(blob, found, frames)
+        return {"z": column.z.tolist(), "solved": True, "x": line.x.tolist(), "arrows": arrows}
     water = results.scene.water
     if water.profile == Profile.NONE:
         return None

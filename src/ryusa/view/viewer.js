@@ -6,13 +6,13 @@ const HELP = [
   ["space", "play, pause"], ["\u2190 \u2192", "one frame back, on"], ["Home End", "first, last frame"], ["\u2191 \u2193", "faster, slower"],
   ["drag", "turn"], ["shift + drag, right button", "shift"], ["wheel, + \u2212", "zoom"], ["1 2 3", "oblique view, from the side, from above"],
   ["o", "perspective on, off"], ["c", "next colouring"], ["click a grain", "choose it, show its track"], ["f", "follow it"], ["Esc", "let it go"],
-  ["b", "fixed grains on, off"], ["w", "walls and water on, off"], ["p", "save a picture (PNG)"], ["h ?", "this list"],
+  ["b", "fixed grains on, off"], ["w", "walls and water on, off"], ["a", "arrows of the water on, off"], ["p", "save a picture (PNG)"], ["h ?", "this list"],
 ];
 const VIEWS = { oblique: [-1.15, 0.38], side: [-Math.PI / 2, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-4] };
 
 class Viewer {
   constructor(holder, data, base64) {
-    Object.assign(this, { holder, data, time: data.t[0], playing: false, picked: -1, following: false, fixedShown: true, wallsShown: true, colouring: 0, loaded: -1, scene: -1 });
+    Object.assign(this, { holder, data, time: data.t[0], playing: false, picked: -1, following: false, fixedShown: true, wallsShown: true, arrowsShown: true, colouring: 0, loaded: -1, scene: -1 });
     this.period = data.period.map((one) => one ?? 0);
     this.camera = new Camera();
     this.build();
@@ -56,6 +56,7 @@ class Viewer {
     const { data } = this, parts = [data.status];
     const shown = data.arrays.radius.shape[0];
     parts.push(shown < data.grains ? `${shown} of ${data.grains} grains, drawn by lot` : `${data.grains} grains`);
+    if (data.flow?.arrows) parts.push(`longest arrow ${data.flow.arrows.fastest.toPrecision(2)} m/s`);
     parts.push(this.frames < data.frames ? `${this.frames} of ${data.frames} frames` : `${data.frames} frames`);
     parts.push(data.folder);  // last: a long name is cut
     return parts.join(" \u00b7 ");
@@ -199,6 +200,7 @@ class Viewer {
     if (this.picked >= 0) painter.drawPlain(this.track(nearest), [0.9, 0.3, 0, 1], "lines");
     painter.drawPlain(this.frame(), [0.55, 0.58, 0.62, 1], "lines");
     if (this.wallsShown) { this.drawWalls(data.scenes[scene], nearest); this.drawRow(k, share); }
+    if (this.arrowsShown) this.drawArrows(k, share);
     this.words(k, share, nearest, scene);
   }
 
@@ -242,6 +244,23 @@ class Viewer {
     }
     painter.drawPlain(lines, [0.1, 0.45, 0.75, 1], "lines");
     painter.drawPlain(faces, [0.15, 0.5, 0.8, 0.22], "triangles");
+  }
+
+  drawArrows(k, share) {  // speeds of the water along a row, on the near side of the box, where no grain hides them
+    const { arrows } = this.arrays;
+    if (!arrows) return;
+    const { at, length } = this.data.flow.arrows, n = at.length, y = this.low[1], next = Math.min(k + 1, this.frames - 1), lines = [];
+    at.forEach(([x, z], i) => {
+      const from = 2 * (k * n + i), to = 2 * (next * n + i), wet = [arrows[from] > 0, arrows[to] > 0];
+      const part = wet[0] && wet[1] ? share : share < 0.5 ? 0 : 1;  // of the nearer frame where one is dry
+      if (x < this.low[0] || x > this.high[0] || !wet[part < 0.5 ? 0 : 1]) return;
+      const [u, w] = [0, 1].map((axis) => length * ((1 - part) * arrows[from + axis] + part * arrows[to + axis] - 128) / 127);
+      if (Math.hypot(u, w) < 0.02 * length) return;
+      const tip = [x + u / 2, y, z + w / 2];
+      lines.push([x - u / 2, y, z - w / 2], tip);
+      for (const side of [-1, 1]) lines.push(tip, [tip[0] - 0.28 * u + 0.14 * side * w, y, tip[2] - 0.28 * w - 0.14 * side * u]);
+    });
+    this.painter.drawPlain(lines, [0.05, 0.2, 0.4, 1], "lines");
   }
 
   surface(frame) {
@@ -372,7 +391,7 @@ class Viewer {
       ArrowUp: () => this.faster(1), ArrowDown: () => this.faster(-1), "+": () => this.zoom(0.8), "=": () => this.zoom(0.8), "-": () => this.zoom(1.25),
       1: () => this.look("oblique"), 2: () => this.look("side"), 3: () => this.look("top"), o: () => { this.camera.flat = !this.camera.flat; },
       c: () => this.colourBy(this.data.colourings[(this.colouring + 1) % this.data.colourings.length].word), f: () => { this.following = !this.following && this.picked >= 0; },
-      Escape: () => { this.picked = -1; this.following = false; this.help.hidden = true; }, b: () => { this.fixedShown = !this.fixedShown; }, w: () => { this.wallsShown = !this.wallsShown; },
+      Escape: () => { this.picked = -1; this.following = false; this.help.hidden = true; }, b: () => { this.fixedShown = !this.fixedShown; }, w: () => { this.wallsShown = !this.wallsShown; }, a: () => { this.arrowsShown = !this.arrowsShown; },
       p: () => this.save(), h: () => { this.help.hidden = !this.help.hidden; }, "?": () => { this.help.hidden = !this.help.hidden; },
     };
     holder.addEventListener("keydown", (event) => {
