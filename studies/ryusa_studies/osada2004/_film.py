@@ -85,12 +85,10 @@ class FilmedFlow:
     Attributes
     ----------
     case : case file of the figure that it is taken from.
-    setup : in words.
     changed : keys of the case that are set, and their values.
     """
 
     case: str
-    setup: str
     changed: dict[str, str]
 
 
@@ -101,13 +99,10 @@ _FRAMES = {
 FLOWS = {
     "film-saltation": FilmedFlow(
         "saltation",
-        "16 saltating grains of 0.2 cm over fixed ones, as in fig7, rotation locked; filmed for 0.5 s",
         {"build.starts": "16", "record.settle": "0.5 s", "stop.time": "1 s", **_FRAMES},
     ),
     "film-avalanche": FilmedFlow(
         "avalanche",
-        "dry avalanche on 40 deg, as in fig14, of 100 grains of 0.2 cm, the size of laboratory films: "
-        "lengths over 100, times over 10 by Froude; filmed from 0.1 to 0.3 s after tilting",
         {
             "grains.diameter": "0.2 cm",
             "build.columns": "10",
@@ -119,8 +114,6 @@ FLOWS = {
     ),
     "film-debris": FilmedFlow(
         "fig17",
-        "Ito's debris flow, as in fig17, rotation locked; its dashpots given as restitution 0.7, tangential "
-        "0.9; filmed for 0.25 s",
         {
             "contact.restitution": "0.7",
             "contact.restitution_shear": "0.9",

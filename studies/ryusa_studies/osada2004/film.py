@@ -14,6 +14,7 @@ from ryusa.measure.apparent_contact import near_pairs, on_film
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
+from ryusa_studies.osada2004 import claims
 from ryusa_studies.osada2004._factors import n_settings
 from ryusa_studies.osada2004._film import (
     COLLISION,
@@ -175,7 +176,7 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
         "but that two grains are near each other. Mean time that pairs are "
         f"within {eps:g} d: {stays}.",
         {
-            "flow": FLOWS[claim].setup,
+            "flow": claims.CLAIMS[claim].setup,
             "restitution": f"{E:g}",
             "springs": "those of the figure; 100 times as stiff for 1e-5 s",
         },
