@@ -7,22 +7,8 @@ import numpy as np
 
 from ryusa.study import Design, Factor, Trial
 from ryusa_studies.osada2004._debris_run import Debris
-from ryusa_studies.osada2004._factors import (
-    DRAG_LAW,
-    PARTING_RULE,
-    SLIP_RULE,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import (
-    CLOSURE,
-    PACKING,
-    START,
-    CaseRun,
-    Found,
-    Plan,
-    paper_run,
-)
+from ryusa_studies.osada2004._factors import DRAG_LAW, PARTING_RULE, SLIP_RULE, friction_angle, n_settings
+from ryusa_studies.osada2004._parts import CLOSURE, PACKING, START, CaseRun, Found, Plan, paper_run
 
 CASE = "fig17"
 Value = Callable[[Debris], float]
