@@ -12,40 +12,22 @@ from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, short
+from ryusa.study import Finding, Trial, short
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import share_interval, share_trial
 
 FIGURE = "fig19"
 TITLE = "Flow of a tilted dry bed"
 CLAIMS = ("bed18",)
-SLOPE, SETTLED, BED, COUNTS = "slope (bed18)", "settled (bed18)", "bed (bed18)", "speed that counts (bed18)"
+SLOPE, SETTLED, COUNTS = "slope (bed18)", "settled (bed18)", "speed that counts (bed18)"
 REST, MOVING = "from rest", "once moving"
 WITHOUT, WITH = "without friction", "with friction"  # its angle is that of the setting
 PUSH = "30 deg"  # slope of the first 0.15 s of a bed that is set moving
-SLOPES = ("21 deg", "23 deg", "25 deg", "28 deg")  # 18 deg is told to 3 deg in Fig. 19
 FLATTER = "19 deg"
-DESIGN = Design(
-    (
-        Factor(SLOPE, {one: {} for one in SLOPES}),
-        Factor(START, {REST: {}, MOVING: {}}),
-        Factor(SETTLED, {WITHOUT: {}, WITH: {}}),
-        Factor(BED, {"random": {}, "flat": {"build.bed": "flat"}}),
-        Factor(COUNTS, {"0.02 sqrt(g d)": {}, "0.1 sqrt(g d)": {}}),
-        friction_angle("timeline.0.friction_angle"),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-    )
-)
+DESIGN = design("bed18")
+SLOPES = DESIGN.levels[SLOPE]
 TILT = 0.3  # when the bed is tilted [s]
 LAST = 0.3  # judged over the last so many seconds, beside as many before
 FLOWS = 0.02  # of sqrt(g d), a diameter in 0.7 s
@@ -94,9 +76,7 @@ class TiltedBedRun:
         return self.speed() > limit and self.speed() > KEEPS * self.speed(LAST)
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Free choices tried, the shipped ones first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> CaseRun:

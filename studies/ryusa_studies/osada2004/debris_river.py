@@ -11,38 +11,17 @@ from ryusa.figures.comparison import Axis, Curve, compared
 from ryusa.measure import front
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
+from ryusa.study import Finding, Trial, exact, over_seeds, seeds_trial
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "debris-river"
 TITLE = "A debris flow at the scale of a river, with deposition"
 CLAIMS = ("debris-river", "debris-river-time")
 CASE = "debris_river"
 LONG, SHORT = "0.01 s", "0.001 s"  # collision times of d = 20 cm, Eq. (8)
-DESIGN = Design(
-    (
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        Factor(
-            PACKING,
-            {
-                "bed of four diameters": {},
-                "bed of six diameters": {"build.bed": "1.2 m"},
-                "rolling coefficient 0.05": {"rolling.coefficient": "0.05"},
-            },
-        ),
-    )
-)
+DESIGN = design("debris_river")
 BREAK = 25.0  # where the slope changes [m]
 STRETCH = 27.5, 40.0  # between which the speed of the front is taken [m]
 STABLE = 0.001, 0.01  # overlaps over d that the paper calls stable [-]
@@ -89,9 +68,7 @@ class River:
         return float(self.front[-1]) - BREAK
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def paired(plan: Plan) -> list[dict[str, str]]:

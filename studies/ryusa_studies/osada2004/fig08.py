@@ -12,11 +12,11 @@ from ryusa.measure import collisions
 from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Band, Design, Finding, Trial, over_range, over_seeds
+from ryusa.study import Band, Finding, Trial, over_range, over_seeds
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, _saltation
-from ryusa_studies.osada2004._drops import AT_STEPS, EXACT, DropRun, Setup
-from ryusa_studies.osada2004._factors import PARTING_RULE, n_settings
+from ryusa_studies.osada2004._drops import DropRun, Setup
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart, over_speed
 
@@ -24,15 +24,7 @@ FIGURE = "fig8"
 TITLE = "Largest overlap against stiffness"
 CLAIMS = ("fig8", "fig8-through")
 SPEED, E, TIMING = "impact speed (fig8)", "restitution (fig8)", "timing (fig8)"
-FASTER = ("0.1 m/s", "0.2 m/s", "0.5 m/s", "0.6 m/s", "0.7 m/s", "0.8 m/s", "1 m/s", "2 m/s")
-DESIGN = Design(
-    (
-        _drops.choice(SPEED, _drops.SPEED, *FASTER),
-        _drops.choice(E, "0.7", "1"),
-        PARTING_RULE,
-        _drops.choice(TIMING, EXACT, AT_STEPS),
-    )
-)
+DESIGN = design("fig08")
 K_N = 100.0  # the paper's spring [N/cm]
 MEAN, HARDEST = "of a saltating grain, mean", "of a saltating grain, hardest"
 QUOTED = _drops.near(0.01, "-", "0.01 at about 100 N/cm")
@@ -63,9 +55,7 @@ def chart(plan: Plan) -> list[Setup]:
     return [Setup(d=d, k_n=k_n) for d in _drops.SIZES for k_n in stiffnesses(plan)]
 
 
-def choices(plan: Plan) -> list[dict[str, str]]:
-    """Settings, the one as shipped first."""
-    return DESIGN.settings(n_settings(plan))
+choices = DESIGN.sets
 
 
 def setup(chosen: Mapping[str, str], k_n: float = K_N) -> Setup:
@@ -79,6 +69,9 @@ def setups(plan: Plan) -> list[Setup]:
     """Every drop."""
     ladders = [setup(chosen, k_n) for chosen in choices(plan) for k_n in LADDER]
     return list(dict.fromkeys([*ladders, *chart(plan)]))
+
+
+rows = _drops.rows_of(setups)
 
 
 def saltating(plan: Plan) -> list[CaseRun]:
@@ -161,11 +154,6 @@ def _limit(chosen: Mapping[str, str], passes: Sequence[bool]) -> Trial:
         return Trial(part, chosen, none, WEAK_ONES, False, f"passes on none, down to {LADDER[0]:g} N/cm")
     ends = LADDER[last : last + 2]
     return Trial(part, chosen, over_range(list(ends), "N/cm", "a spring and the next stiffer"), WEAK_ONES)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -16,17 +16,10 @@ from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, vibrating_sh
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Interval, Trial, not_negative, seeds_trial, short
+from ryusa.study import Finding, Interval, Trial, not_negative, seeds_trial, short
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    FULL,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import ROTATION, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import FULL, design
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import share_interval, share_trial
 from ryusa_studies.osada2004.figures.vibration_threshold import over_threshold
 from ryusa_studies.osada2004.forward_euler import integrate, step
@@ -51,29 +44,9 @@ EULER = "forward differences, spring from overlap, 10 steps"
 ONE_STEP = "forward differences, spring from overlap, one step for both (10 and 100 steps)"
 FORWARD = (SUMMED, EULER, ONE_STEP)
 STEPS = 10.0  # the paper's own limit
-# the paper does not say whether grains turn in this box; its other dense runs are locked
-TURNING = Factor(ROTATION, {"locked": {}, "free": {"motion.rotation": "free"}})
-READ = (Factor(THRESHOLD, {one: {} for one in THRESHOLDS}), Factor(MOVED, {one: {} for one in WAYS}))
-COMMON = (friction_angle(), SLIP_RULE, PARTING_RULE, STIFFNESS_RATIO, TURNING)
-DESIGN = Design(
-    (
-        *COMMON,
-        Factor(HEIGHT, {"1 cm": {}, "0 cm": {"build.height": "0 cm"}, "2 cm": {"build.height": "2 cm"}}),
-        Factor(SCHEME, {one: {} for one in (OURS, *FORWARD)}),
-        *READ,
-    )
-)
-SIZES = ("0.05 cm", "0.1 cm", "0.5 cm", "1 cm")
-BELOW, ABOVE = ("0.005", "0.002"), ("0.03", "0.1")  # overlap/d asked for
-OTHERS = Design(
-    (
-        *COMMON,
-        Factor(SIZE, {one: {} for one in SIZES}),
-        Factor(OVERLAP, {one: {} for one in BELOW}),
-        Factor(SCHEME, {one: {} for one in (OURS, SUMMED, EULER)}),
-        *READ,
-    )
-)
+DESIGN = design("fig10")
+ABOVE = ("0.03", "0.1")  # overlap/d asked for
+OTHERS = design("fig10-others")
 AT, D = 0.125, 0.002  # when the paper looks at the stiff grains [s]; its diameter [m]
 MARKED = (20, 39)  # one amid the pile, one in its top layer; the text does not say where No. 1 and No. 2 lay
 GRAINS = 42
@@ -103,18 +76,14 @@ class Fall:
         return self.moved if scheme == OURS else self.forward[scheme]
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """What the text leaves open about the box, the shipped ones first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], k_n: str, seed: int) -> CaseRun:
     return paper_run("fig10", DESIGN.overrides(chosen) | ({} if k_n == SOFT else {STIFFNESS: k_n}), seed)
 
 
-def other_settings(plan: Plan) -> list[dict[str, str]]:
-    """What the text leaves open about boxes of other grains."""
-    return OTHERS.settings(n_settings(plan))
+other_settings = OTHERS.sets
 
 
 def _other(chosen: Mapping[str, str], seed: int) -> CaseRun:

@@ -12,7 +12,7 @@ from ryusa.study import Band, Finding, Trial
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, fig08
 from ryusa_studies.osada2004._drops import DropRun, Setup
-from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
 FIGURE = "fig11"
@@ -34,12 +34,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(time=TIME, speed=speed) for speed in speeds(plan)] + fig08.chart(plan)
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -67,11 +62,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             ),
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Found) -> figures.StiffnessBand:

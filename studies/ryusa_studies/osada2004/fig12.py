@@ -10,7 +10,7 @@ from ryusa.study import Finding, Trial, over_range
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, fig11
 from ryusa_studies.osada2004._drops import DropRun, Setup
-from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
 FIGURE = "fig12"
@@ -40,12 +40,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [one for one in pairs if one.deepest < 0.9] + chart
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -93,11 +88,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             ),
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -19,7 +19,7 @@ CLAIMS = ("fig14",)
 PART = "difference of the two profiles of concentration, means over seeds, over their mean"
 ALIKE = band("fig14", PART)
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -53,11 +53,6 @@ def _scatter(base: Sequence[RunPair]) -> tuple[str, ...]:
         for time, runs in halves.items()
     ]
     return (f"single runs that differ only in the seed differ by {', '.join(lines)}",)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -29,6 +29,7 @@ from ryusa_studies.osada2004._avalanche import (
 )  # fmt: skip
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._parts import PHI, ROTATION, SLIP, Found, Plan
+from ryusa_studies.osada2004._shares import halves
 from ryusa_studies.osada2004.fig14 import ALIKE
 from ryusa_studies.osada2004.fig14 import PART as ALIKE_PART
 from ryusa_studies.osada2004.figures import SensitivityRow, sensitivity
@@ -45,7 +46,7 @@ MORE = band("fig15-flux", FLUX)
 LOCKED = {**SHIPPED, ROTATION: "locked", PHI: "20 deg"}
 CAPS = ("spring", "total")
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def depth_mean(found: Sequence[RunPair]) -> float:
@@ -72,13 +73,10 @@ def least(part: str, chosen: Mapping[str, str], found: Sequence[RunPair], limits
         high=min(one.high for one in jointly),
         how=f"least of {len(alone)} layers, each {worst.how}; upper limit after Bonferroni",
     )
-    one, other = (
-        limits.holds(exact(min(float(np.mean(x[half::2])) for x in by_layer), limits.unit))
-        if len(found) > half
-        else None
-        for half in (0, 1)
+    by_half = halves(
+        range(len(found)), lambda half: min(float(np.mean([x[k] for k in half])) for x in by_layer), limits
     )
-    return Trial(part, chosen, both, limits, halves=(one, other))
+    return Trial(part, chosen, both, limits, halves=by_half)
 
 
 soft_speed = each(lambda pair: pair.soft.speed)  # of all grains, with long contacts [m/s]
@@ -168,11 +166,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             ),
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

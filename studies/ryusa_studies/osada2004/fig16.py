@@ -39,7 +39,7 @@ PARTS = {
 }
 NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -142,11 +142,6 @@ def _mean(values: Sequence[float]) -> float:
 def _without(one: Trial) -> Trial:
     """Let a trial without a number fail: there are no such ways to compare."""
     return one if math.isfinite(one.found.value) else replace(one, decided=False, note=NONE)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -13,14 +13,14 @@ from ryusa.laws.debris import equilibrium_concentration
 from ryusa.measure import collisions, profiles
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial, short
+from ryusa.study import Finding, Trial, exact, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _debris
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._debris_run import LAYER, concentration, inside
 from ryusa_studies.osada2004._egashira import DebrisFlow
-from ryusa_studies.osada2004._factors import DRAG_LAW, PARTING_RULE, SLIP_RULE, friction_angle, n_settings
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parallel import STRETCHES, Parallel, parallel
-from ryusa_studies.osada2004._parts import CLOSURE, PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow against Egashira's closed forms, and how parallel its paths are"
@@ -50,19 +50,7 @@ def _springs(time: str) -> dict[str, str]:
     return {**keys, "time.steps_per_contact": STEPS.get(time, "10")}
 
 
-_SHARED = {one.name: one for one in _debris.DESIGN.factors}
-DESIGN = Design(
-    (
-        Factor(TIME, {one: _springs(one) for one in TIMES}),
-        _SHARED[_debris.AMOUNT],
-        _SHARED[CLOSURE],
-        PARTING_RULE,
-        friction_angle(),
-        _SHARED[PACKING],
-        DRAG_LAW,
-        SLIP_RULE,
-    )
-)
+DESIGN = design("fig17_egashira", {TIME: {one: _springs(one) for one in TIMES}})
 SHIPPED = DESIGN.base
 
 
@@ -148,9 +136,7 @@ def failed(error: RyusaError) -> PassedThrough | None:
     return PassedThrough(str(error)) if isinstance(error, OverlapTooLarge | WaterError) else None
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def sweep(plan: Plan) -> list[dict[str, str]]:

@@ -15,6 +15,7 @@ from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._debris import FREE, LOCKED, SETTLED, SHIPPED, Value
 from ryusa_studies.osada2004._debris_run import Debris
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan
+from ryusa_studies.osada2004._shares import halves, within_0_1
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow with rotation locked and free"
@@ -100,11 +101,8 @@ def _profile(chosen: Mapping[str, str], free: Sequence[Debris], locked: Sequence
     def change(rows: np.ndarray) -> Interval:
         return _factor(largest_mean([list(third) for third in rows.T], limits.unit, absolute=True))
 
-    one, other = (
-        limits.holds(exact(change(logs[half::2]).value, limits.unit)) if len(logs) > half else None
-        for half in (0, 1)
-    )
-    return Trial(PROFILE, chosen, change(logs), limits, halves=(one, other))
+    by_half = halves(list(logs), lambda half: change(np.array(half)).value, limits)
+    return Trial(PROFILE, chosen, change(logs), limits, halves=by_half)
 
 
 def _thirds(one: Debris) -> np.ndarray:
@@ -113,9 +111,8 @@ def _thirds(one: Debris) -> np.ndarray:
 
 def _lock(part: str, chosen: Mapping[str, str], runs: Sequence[Debris]) -> Trial:
     """One part of what is asked of locked grains; a single run that comes to rest is harm."""
-    trial = _debris.as_share(
-        seeds_trial(part, chosen, [LOCK[part](one) for one in runs], band("fig17-lock", part))
-    )
+    trial = seeds_trial(part, chosen, [LOCK[part](one) for one in runs], band("fig17-lock", part))
+    trial = replace(trial, found=within_0_1(trial.found))
     still = sum(not _debris.flows([one]) for one in runs)
     if part != REST or still == 0:
         return trial

@@ -7,16 +7,10 @@ from matplotlib.figure import Figure
 
 from ryusa.figures.repose import surface as draw_surface
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial
+from ryusa.study import Finding, Trial
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parts import PACKING, PHI, ROTATION, SLIP, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
 
@@ -25,27 +19,7 @@ TITLE = "Slope of a heap after the removal of its wall"
 CLAIMS = ("fig19-locked", "fig19-free")
 FIT = "height range"  # of the slope: read from the same run
 WITH_FRICTION = "settled with friction"  # its angle is that of the setting
-HEAPS = Factor(
-    PACKING,
-    {
-        "500 grains within 20 %": {},
-        "sizes within 5 %": {"grains.spread": "0.05"},
-        "252 grains": {"build.columns": "18", "build.layers": "14"},
-        "floor ends at the gate": {"build.run_out": "0 cm", "build.drop": "4 cm"},
-        "smooth floor": {"build.floor": "plane", "build.run_out": "0 cm"},
-        WITH_FRICTION: {},
-    },
-)
-DESIGN = Design(
-    (
-        friction_angle(_heap.PHI_KEY),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        HEAPS,
-        Factor(FIT, {one: {} for one in _heap.RANGES}),
-    )
-)
+DESIGN = design("fig19")
 SLOPE_PART, MOVING_PART = "final slope", "share of grains still moving"
 BANDS = {rotation: band(f"fig19-{rotation}", SLOPE_PART) for rotation in ("locked", "free")}
 PAPER = {"locked": 33.0, "free": 18.0}  # deg
@@ -62,9 +36,7 @@ DECIDED = {
 }
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Free choices tried, the shipped ones first; the same for both heaps."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:

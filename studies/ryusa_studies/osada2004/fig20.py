@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.results import Results
 from ryusa.study import Finding
 from ryusa_studies.osada2004 import _saltation
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
@@ -50,10 +49,7 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     ]
 
 
-def measure(run: Results, one: CaseRun) -> SaltationRun:
-    """Hops of all starts."""
-    del one
-    return _saltation.hops(run)
+measure = _saltation.measure
 
 
 def _pair(found: Found, plan: Plan, chosen: Mapping[str, str]) -> tuple[Group, Group]:

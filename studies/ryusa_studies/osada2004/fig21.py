@@ -10,10 +10,11 @@ from ryusa.measure import saltation, spin
 from ryusa.measure.spin import spin_against
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, over_seeds
+from ryusa.study import Finding, Trial, over_seeds
 from ryusa_studies.osada2004 import _saltation
 from ryusa_studies.osada2004._parts import START, CaseRun, Found, Plan
 from ryusa_studies.osada2004._saltation import FLOWING, FREE, HOPS, MANY, RESTING, SHIPPED, STIFF
+from ryusa_studies.osada2004._shares import within_0_1
 from ryusa_studies.osada2004.figures.saltation import SpinPath, spin_over_way
 
 FIGURE = "fig21"
@@ -91,7 +92,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         trials += _saltation.trials("fig21", PART_SPIN, read, [[one.mean for one in here] for here in runs])
         shares = [[one.share(which) for one in here] for here in runs]
         trials += [
-            replace(one, found=share(one.found))
+            replace(one, found=within_0_1(one.found))
             for one in _saltation.trials("fig21", PART_GROWS, read, shares)
         ]
     base, rest = runs[0], [found[_run({**SHIPPED, START: RESTING}, seed)] for seed in plan.seeds]
@@ -120,11 +121,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             ),
         ),
     )
-
-
-def share(found: Interval) -> Interval:
-    """The interval of a share, which cannot leave 0 to 1."""
-    return replace(found, low=max(0.0, found.low), high=min(1.0, found.high))
 
 
 def after(runs: Sequence[Spun]) -> str:

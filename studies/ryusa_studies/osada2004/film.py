@@ -15,7 +15,6 @@ from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import claims
-from ryusa_studies.osada2004._factors import n_settings
 from ryusa_studies.osada2004._film import (
     COLLISION,
     CUT,
@@ -94,7 +93,7 @@ class Filmed:
 
 def settings(claim: str, plan: Plan) -> list[dict[str, str]]:
     """Sets of choices that need runs of their own, the base first."""
-    return DESIGNS[claim].settings(n_settings(plan))
+    return DESIGNS[claim].sets(plan)
 
 
 def run(claim: str, chosen: Mapping[str, str], seed: int) -> CaseRun:

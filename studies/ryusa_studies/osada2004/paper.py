@@ -7,6 +7,7 @@ analysis of sediment-mixture flows".
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -43,4 +44,5 @@ _GIVEN = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="u
 CITATION: str = _GIVEN["citation"]
 EQUATIONS = {number: Equation(number, **one) for number, one in _GIVEN["equations"].items()}
 SYMBOLS = tuple(Symbol(*row) for row in _GIVEN["symbols"])
+QUESTIONS: list[dict[str, Any]] = _GIVEN["questions"]  # title, anchor, about, claims
 READINGS = {id: Reading(id, **one) for id, one in _GIVEN["readings"].items()}

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.results import Results
 from ryusa.study import Finding, over_seeds, short
 from ryusa_studies.osada2004 import _saltation
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
@@ -53,10 +52,7 @@ def _series(keys: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     return _saltation.run(SHIPPED, rotation, seed, keys)
 
 
-def measure(run: Results, one: CaseRun) -> SaltationRun:
-    """Hops of all starts."""
-    del one
-    return _saltation.hops(run)
+measure = _saltation.measure
 
 
 def _group(found: Found, plan: Plan, chosen: Mapping[str, str], rotation: str) -> Group:
