@@ -41,12 +41,6 @@ WINDOWS = {"1 to 2 s": (1.0, 2.0), "2 to 3 s": (2.0, 3.0)}
 FIRST = "1 to 2 s"
 DESIGN = design("avalanche")
 SHIPPED = DESIGN.base
-SETTLED = {
-    "d": "20 cm",
-    "slope": "40 deg",
-    "restitution": "0.7",
-    "packing as shipped": "equal grains, 10 layers over a flat bed of grains",
-}
 BETWEEN, ALL = "between bed and movers", "all"  # grains whose ways are compared
 FINE = 0.001  # vertical excursion, in diameters, from which the finest turns count
 UNITS = {

@@ -37,17 +37,6 @@ def longer_by(times: str) -> dict[str, str]:
 DESIGN = design("debris", {LONGER: {one: longer_by(one) for one in (LONG, "3", "10")}})
 SHIPPED = {name: level for name, level in DESIGN.base.items() if name != LONGER}
 STANDS = 0.5  # share of grains and moments at rest, from which a flow has come to rest
-SETTLED = {
-    "d": "0.218 cm",
-    "tau_star": "1.08",
-    "depth": "1.48 cm",
-    "slope": "15.2 deg",
-    "k_n, k_s": "200, 15 N/cm",
-    "eta_n, eta_s": "0.001, 0.0001 N s/cm",
-    "k_s/k_n": "0.075",
-    "rotation": "locked",
-    "window": "1 to 2 s",
-}
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:

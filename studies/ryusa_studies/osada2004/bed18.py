@@ -15,6 +15,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Trial, short
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import share_interval, share_trial
 
@@ -148,18 +149,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{PUSH} until 0.45 s, then {name}: at most {short(flow.most)} sqrt(g d), "
             f"{short(flow.speed())} at the end"
         )
-    return (
-        Finding(
-            "bed18",
-            tuple(trials),
-            "There are two angles: a bed at rest must first break its packing, and the denser it was laid "
-            "down the steeper it must be, while a moving bed continues to flow at a lower slope. A "
-            "collapsing heap stops near the second angle.",
-            {"bed": "200 grains, 10 layers, sizes +-20 %, dry", "k_n": "100 N/cm", "rotation": "free"},
-            also=tuple(also),
-            beside=tuple(beside),
-        ),
-    )
+    return (finding("bed18", trials, also=also, beside=beside),)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -14,6 +14,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Trial, exact, over_seeds, seeds_trial
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "debris-river"
@@ -164,11 +165,6 @@ def _stayed(long: River, short: River) -> float:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Whether grains come to rest, with overlaps that are stable; whether the collision time matters."""
     first = settings(plan)[0]
-    done = {
-        "grains": "20 cm within 20 %, in water",
-        "stream": "15 deg, then 3 deg from 25 m on; water 1.9 m2/s on to a saturated bed",
-    }
-
     numbers: Mapping[str, tuple[str, Callable[[River], float]]] = {
         "speed of the front from 27.5 to 40 m": ("m/s", lambda one: one.speed),
         "its way past the break": ("m", lambda one: one.way),
@@ -185,27 +181,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         )
         for time in (LONG, SHORT)
     )
-    return (
-        Finding(
-            "debris-river",
-            (
-                *_alone(found, plan, REST_PART, lambda one: one.share),
-                *_alone(found, plan, OVERLAP_PART, lambda one: one.overlap),
-            ),
-            "Grains come to rest where the slope is less than that on which the flow carries them on. The "
-            "overlap is the closing speed times the collision time over pi: 0.01 d with 0.01 s is 0.6 m/s.",
-            done,
-            also=also,
-        ),
-        Finding(
-            "debris-river-time",
-            (*_pairs(found, plan, WAY_PART, _ways), *_pairs(found, plan, STAYED_PART, _stayed)),
-            "Grains in a dense flow touch several others at once for much longer than one collision; what a "
-            "collision time changes is the part of the stress that collisions carry.",
-            done,
-            also=also,
-        ),
-    )  # fmt: skip
+    runs = [
+        *_alone(found, plan, REST_PART, lambda one: one.share),
+        *_alone(found, plan, OVERLAP_PART, lambda one: one.overlap),
+    ]
+    pairs = [*_pairs(found, plan, WAY_PART, _ways), *_pairs(found, plan, STAYED_PART, _stayed)]
+    return (finding("debris-river", runs, also=also), finding("debris-river-time", pairs, also=also))
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -17,6 +17,7 @@ from ryusa.study import Finding, Interval, Trial, not_negative, over_seeds, seed
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "fig23"
@@ -116,19 +117,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         key = {LIMIT: limit}
         beside.append(Trial("slope of the heap of Fig. 19, f' = 1", key, slope, None, note=_broken(group)))
         beside.append(Trial("energy taken by M_f over the height lost by the heap", key, lost, None))
-    return [
-        Finding(
-            "eq13",
-            tuple(trials),
-            "In Eq. (13) M_f opposes M_t, the torque of the shear force, not the spin. On a rolling grain "
-            "M_f itself causes the shear force of the next M_t: it brakes and drives alternately, and can "
-            "create energy. Limited to |M_t| it weakens the torque that would stop a grain as much as the "
-            "one that would turn it.",
-            {"rotation": "free", "k_n": "100 N/cm"},
-            also=_arms(),
-            beside=tuple(beside),
-        )
-    ]
+    return [finding("eq13", trials, also=_arms(), beside=beside)]
 
 
 def _broken(group: Sequence[Any]) -> str:

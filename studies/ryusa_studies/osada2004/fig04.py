@@ -13,6 +13,7 @@ from ryusa.study import Band, Finding, Interval, Trial, over_range
 from ryusa_studies.osada2004 import _drops
 from ryusa_studies.osada2004._drops import DropRun, Setup
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
@@ -86,18 +87,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     grid = times(found, plan)
     law = np.array([[drop.eq_8 for drop in row] for row in _grid(found, plan)])
     also = [f"runs over Eq. (8): {np.min(grid / law):.4f} to {np.max(grid / law):.4f}"]
-    return (
-        Finding(
-            "fig4",
-            tuple(trials),
-            "For a mass on a spring the contact time is proportional to the square root of mass over "
-            "stiffness, and so to d^(3/2). The quoted 0.01 s follows for quartz. It is a value of the "
-            "formula rather than of a real contact: on so soft a spring the overlap is large, and the "
-            "weight of the grain lengthens the contact.",
-            {"restitution": "1", "weight": "none, as in Eq. (8)", "steps per contact": "10"},
-            also=tuple(also),
-        ),
-    )
+    return (finding("fig4", trials, also=also),)
 
 
 def _grid(found: Found, plan: Plan) -> list[list[DropRun]]:

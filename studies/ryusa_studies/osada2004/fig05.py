@@ -12,6 +12,7 @@ from ryusa.study import Band, Finding, Trial, over_range
 from ryusa_studies.osada2004 import _drops
 from ryusa_studies.osada2004._drops import EXACT, NO_TENSION, TENSION, DropRun, Setup
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import drop_chart
 
@@ -73,19 +74,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     most = max((h for k, (h, _) in enumerate(light) if all(good for _, good in light[: k + 1])), default=0.0)
     least = min(slack, key=lambda one: one[1])
     return (
-        Finding(
+        finding(
             "fig5",
-            tuple(trials),
-            f"The dashpot changes the contact time little: without weight to {no_pull:.3f} of Eq. (8) if "
-            f"it may not pull, to {pull:.4f} if it may. Weight has a larger effect: as g/(v omega_0) "
-            "approaches 1, with soft springs and slow impacts, contacts become longer, and in the end the "
-            "grain does not rebound.",
-            {"restitution": "0.7", "d": _drops.DIAMETER, "weight": "yes"},
+            trials,
             also=(
                 f"weight reduces the restitution too: e = {least[1]:.2f} instead of 0.7 at g/(v omega_0) = "
                 f"{least[0]:.2f}",
                 f"within 10 % in every run with g/(v omega_0) up to {most:.2g}",
             ),
+            no_pull=no_pull,
+            pull=pull,
         ),
     )
 

@@ -17,6 +17,7 @@ from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, _saltation
 from ryusa_studies.osada2004._drops import DropRun, Setup
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart, over_speed
 
@@ -107,20 +108,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     wanted = quantity(_drops.SPEED, "m/s") * 0.01 / base
     speed = np.concatenate([one.speed for one in hits])
     return (
-        Finding(
+        finding(
             "fig8",
-            tuple(trials),
-            "The overlap is proportional to impact speed and to the square root of mass over stiffness. "
-            f"At 100 N/cm it is {base:.4f} for {_drops.SPEED}, so 0.01 requires {wanted:.2f} m/s, a fall "
-            f"of {100.0 * wanted**2 / 19.6:.1f} cm in air; a saltating grain hits the bed with "
-            f"{speed.mean():.2f} m/s along the normal on average and {speed.max():.2f} m/s at most.",
-            {"d": _drops.DIAMETER, "k_n": "100 N/cm"},
+            trials,
             also=(
                 f"at {_drops.SPEED} an overlap of 0.01 d requires {K_N * (base / 0.01) ** 2:.0f} N/cm",
                 f"{100.0 * np.mean(speed >= wanted):.0f} % of the {len(speed)} hits of the saltating grain "
                 f"are at {wanted:.2f} m/s or more",
             ),
-            beside=tuple(beside),
+            beside=beside,
+            base=base,
+            wanted=wanted,
+            height=100.0 * wanted**2 / 19.6,
+            mean=speed.mean(),
+            largest=speed.max(),
         ),
         _through(found, plan),
     )
@@ -135,14 +136,7 @@ def _through(found: Found, plan: Plan) -> Finding:
         deep = over_range(list(weak.overlap), "-", f"{len(weak.overlap)} phases of first touch")
         trials.append(Trial("largest overlap/d, d = 0.2 cm, k_n = 0.01 N/cm", chosen, deep, GREATLY))
         trials.append(_limit(chosen, [one.passed > 0 for one in ladder]))
-    return Finding(
-        "fig8-through",
-        tuple(trials),
-        "A grain passes where the spring cannot stop it within a diameter. The overlap grows with impact "
-        "speed over the root of the stiffness, so the limit goes with the square of the speed; on the "
-        "softest springs its weight adds to it.",
-        {"d": _drops.DIAMETER, "partner": "fixed, hit head-on"},
-    )
+    return finding("fig8-through", trials)
 
 
 def _limit(chosen: Mapping[str, str], passes: Sequence[bool]) -> Trial:

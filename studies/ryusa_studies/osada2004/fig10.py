@@ -19,6 +19,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Interval, Trial, not_negative, seeds_trial, short
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import FULL, design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import share_interval, share_trial
 from ryusa_studies.osada2004.figures.vibration_threshold import over_threshold
@@ -206,19 +207,15 @@ def _rule(plan: Plan, found: Found) -> Finding:
             key = {OVERLAP: one[OVERLAP], THRESHOLD: threshold, MOVED: "to and fro"}
             hits = _vibrating(runs, one | key)
             beside.append(Trial(RULE_PART, key, share_interval(hits, GRAINS), None))
-    return Finding(
+    return finding(
         "fig10-rule",
-        tuple(trials),
-        "Dry boxes with equal overlap/d are similar at all diameters, with times in units of sqrt(d/g), "
-        "so the rule holds for all diameters or for none. There is no threshold at 0.01: the lower "
-        "overlap/d, the smaller and the shorter the motion left by the fall.",
-        {"window and run": "0.01 s and 0.5 s at 0.2 cm, in proportion to sqrt(d/g)"},
+        trials,
         also=(
             "overlap/d reached: "
             + short(max(found[_other(one, s)].overlap for one in other_settings(plan) for s in plan.seeds))
             + " at most",
         ),
-        beside=tuple(beside),
+        beside=beside,
     )
 
 
@@ -233,7 +230,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     soft, stiff = _both(plan, found)
     runs: list[Fall] = [found[_run(DESIGN.base, SOFT, seed)] for seed in plan.seeds]
     stiffs: list[Fall] = [found[_run(DESIGN.base, STIFF, seed)] for seed in plan.seeds]
-    shared = {"d": "0.2 cm", "grains": "42, all alike", "window": "0.01 s"}
     overlap = [float(np.median([one.overlap for one in some])) for some in (runs, stiffs)]
     net = float(np.median([np.abs(one.moved.net[-1]) / one.moved.d_mean for one in runs]))
     also = [
@@ -252,27 +248,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{short(_left(runs, 0.5, name))} d and {short(_left(stiffs, 0.5, name))} d"
         )
     return (
-        Finding(
+        finding(
             "fig10-soft",
-            tuple(soft),
-            "The motion left by the fall is damped by the dashpots at a rate proportional to sqrt(k_n), "
-            "ten times more slowly in the soft box: the median grain oscillates by "
-            f"{short(_left(runs, 0.3))} d at 0.3 s and {short(_left(runs, 0.5))} d at 0.5 s. It is not "
-            "sustained, so the threshold decides. Forward differences sustain it if the spring force is "
-            f"calculated from the overlap and a contact has ten steps ({short(_left(runs, 0.5, EULER))} d "
-            f"at 0.5 s, but then the stiff box vibrates too, {short(_left(stiffs, 0.5, EULER))} d); with "
-            "the spring force summed as printed they do not.",
-            {**shared, "k_n": SOFT},
-            also=tuple(also),
+            soft,
+            also=also,
+            left_3=short(_left(runs, 0.3)),
+            left_5=short(_left(runs, 0.5)),
+            euler=short(_left(runs, 0.5, EULER)),
+            stiff=short(_left(stiffs, 0.5, EULER)),
         ),
-        Finding(
-            "fig10-stiff",
-            tuple(stiff),
-            "A stiff pile loses its oscillation within hundredths of a second. How long grains go on "
-            "moving depends on the height of the fall and, with rotation free, on rolling, which is "
-            "hardly resisted.",
-            {**shared, "k_n": STIFF},
-        ),
+        finding("fig10-stiff", stiff),
         _rule(plan, found),
     )
 

@@ -10,6 +10,7 @@ from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _avalanche
 from ryusa_studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOW, RunPair
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004._shares import within_0_1
 
@@ -43,18 +44,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             beside.append(Trial(part, choices, shown, None))
     base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
     speed = short(sum(pair.soft.speed for pair in base) / len(base))
-    return (
-        Finding(
-            "fig12-avalanche",
-            tuple(judged),
-            "The largest overlap of an impact is proportional to its speed times the collision time; and in "
-            "a dense flow a contact of 0.01 s also carries the weight of the grains above. As shipped the "
-            f"grains flow at {speed} m/s.",
-            _avalanche.SETTLED,
-            beside=tuple(beside),
-            readings=(WINDOW,),
-        ),
-    )
+    return (finding("fig12-avalanche", judged, beside=beside, speed=speed),)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

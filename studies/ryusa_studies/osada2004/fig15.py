@@ -28,6 +28,7 @@ from ryusa_studies.osada2004._avalanche import (
     unlike,
 )  # fmt: skip
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, ROTATION, SLIP, Found, Plan
 from ryusa_studies.osada2004._shares import halves
 from ryusa_studies.osada2004.fig14 import ALIKE
@@ -129,17 +130,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     left = "; ".join(f"{_avalanche.label(one)}: {text(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
     return (
-        Finding(
+        finding(
             "fig15",
             (
                 *tried(DEPTH_MEAN, together(depth_mean), ABOUT),
                 *tried(LEAST, least, WHOLE),
                 *flow,
             ),
-            f"{why} The flow does not become steady, so the difference depends on the time window: "
-            f"{text(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
-            _avalanche.SETTLED,
-            readings=(_avalanche.WINDOW,),
             also=(
                 *(
                     f"speed, {_avalanche.label(one)}: {text(soft_speed, one)} m/s with {SOFT}, "
@@ -148,22 +145,24 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
             ),
+            why=why,
+            shipped=text(depth_mean, SHIPPED),
+            windows=windows,
         ),
-        Finding(
+        finding(
             "fig15-flux",
             (
                 *tried(FLUX, apart(flux_of), MORE),
                 *tried(ALIKE_PART, together(unlike), ALIKE),
                 *flow,
             ),
-            "Flux is concentration times speed: with like profiles of concentration it differs as the "
-            f"speed does, by a factor of {text(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
-            _avalanche.SETTLED,
-            readings=(_avalanche.WINDOW,),
-            also=tuple(
+            also=[
                 f"flux ratio, {_avalanche.label(one)}: {text(flux_ratio, one)} at {windows}"
                 for one in tried_sets
-            ),
+            ],
+            shipped=text(flux_ratio, SHIPPED),
+            windows=windows,
+            why=why,
         ),
     )
 

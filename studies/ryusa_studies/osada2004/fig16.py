@@ -23,6 +23,7 @@ from ryusa_studies.osada2004._avalanche import (
     together,
 )
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
 
 FIGURE = "fig16"
@@ -82,14 +83,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         if all(pair.flows for pair in _avalanche.pairs(found, plan, one, window))
     )
     return (
-        Finding(
+        finding(
             "fig16",
-            tuple(tried),
-            "A grain near the bed rises and falls once over every bed grain that it passes, whatever the "
-            "collision time: that sets how often its path reverses on a given way. "
-            f"{SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
-            {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
-            readings=(_avalanche.WINDOW, GRAINS, RUNS),
+            tried,
             also=(
                 "grains that touch the bed and moving grains alternately, wherever they began: "
                 f"{words['n', BETWEEN]}",
@@ -98,6 +94,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 f"vertical turns a second counted from {_avalanche.FINE:g} d, grains between bed and movers: "
                 f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
             ),
+            between=said(BETWEEN),
         ),
     )
 

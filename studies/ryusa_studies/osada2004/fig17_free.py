@@ -12,8 +12,9 @@ from ryusa import figures
 from ryusa.study import Finding, Interval, Trial, exact, largest_mean, seeds_trial, short, transformed
 from ryusa_studies.osada2004 import _debris, _debris_run
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._debris import FREE, LOCKED, SETTLED, SHIPPED, Value
+from ryusa_studies.osada2004._debris import FREE, LOCKED, SHIPPED, Value
 from ryusa_studies.osada2004._debris_run import Debris
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan
 from ryusa_studies.osada2004._shares import halves, within_0_1
 
@@ -145,12 +146,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
     both = partial(_both, text)
     return (
-        Finding(
+        finding(
             "fig17-lock",
-            tuple(lock),
-            "A flow that has begun stays a flow: contacts last less than 0.1 ms, and no two locked grains "
-            "stay together. But locked grains that lie on the bed may never leave it where free ones flow.",
-            {**SETTLED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
+            lock,
             also=(
                 *_rest(found, plan),
                 f"movers in rods, as shipped: {text(LOCKED, 'rods')}; with shuffled paths "
@@ -158,24 +156,18 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "the measured profiles that the paper fitted are not in its text",
             ),
         ),
-        Finding(
+        finding(
             "fig17-free",
-            tuple(faster),
-            "A grain that rotates rolls over the fixed grains instead of sliding: it loses less momentum "
-            f"to the bed, and the flow is faster. As shipped: {both('near_bed', 'm/s')} near the bed, "
-            f"{both('speed', 'm/s')} on average.",
-            {
-                **SETTLED,
-                "rotation": FREE,
-                "held against": "the same with rotation locked, which the paper fitted",
-            },
+            faster,
             also=(
                 f"speed of the second half second over that of the first {both('drift', '')}",
                 "concentration in the lower, middle and upper third: "
                 f"{_three(_free_runs(found, plan, SHIPPED))} against {_three(locked)}",
                 f"a twentieth of the free grains spin faster than {text(FREE, 'spin')} rad/s",
             ),
-            beside=tuple(beside),
+            beside=beside,
+            near_bed=both("near_bed", "m/s"),
+            speed=both("speed", "m/s"),
         ),
     )
 

@@ -11,7 +11,8 @@ from ryusa.study import Finding, Trial
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
-from ryusa_studies.osada2004._parts import PACKING, PHI, ROTATION, SLIP, CaseRun, Found, Plan
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PACKING, PHI, SLIP, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
 
 FIGURE = "fig19"
@@ -25,15 +26,6 @@ BANDS = {rotation: band(f"fig19-{rotation}", SLOPE_PART) for rotation in ("locke
 PAPER = {"locked": 33.0, "free": 18.0}  # deg
 # Slopes of locked heaps pass what is asked between the levels of the friction angle: shown beside.
 BETWEEN = ("12 deg", "14 deg", "16 deg")
-DECIDED = {
-    "locked": "A locked grain leaves its pocket only if the slope reaches 30 deg + phi, and columns of "
-    "locked grains move as rigid bodies, so the friction angle decides the slope. With the "
-    "dashpot kept while sliding, as in Eqs. (2) and (3) as printed, a viscous force adds to the "
-    "cap, and the heap creeps at m g/eta_s.",
-    "free": "A grain that may rotate rolls out of its pocket at 30 deg whatever phi is, so friction "
-    "matters little once grains roll rather than slide. Packing and floor determine the slope: on a "
-    "smooth floor the whole heap spreads.",
-}
 
 
 settings = DESIGN.sets
@@ -96,17 +88,11 @@ def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
         "deg",
         f"observed for {min(ends):.1f} to {max(ends):.1f} s after the removal of the gate",
     )
-    common = {
-        ROTATION: rotation,
-        "k_n": "100 N/cm",
-        "packing, unless it says so": "settled without friction, turning; phi and rotation set 0.01 s before "
-        "the gate goes",
-    }
     beside = tuple(
         _heap.slope_trial(SLOPE_PART, {PHI: phi}, [found[one] for one in runs], _heap.MEAN, BANDS[rotation])
         for phi, runs in (between(plan) if rotation == "locked" else {}).items()
     )
-    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also, beside=beside)
+    return finding(f"fig19-{rotation}", trials, also=also, beside=beside)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -11,6 +11,7 @@ from ryusa.study import Finding, Interval, Trial, exact, over_seeds, pseudo_valu
 from ryusa_studies.osada2004 import _movable_bed
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import halves
@@ -30,17 +31,6 @@ PART_RODS = "movers in rods minus those with shuffled paths"
 PART_MORE = "movers in rods, locked over free, in decades"
 PART_LESS = "movers in rods, locked minus free"  # judged for two hours of 2026-11-21, as registered; shown
 LEAST = 0.01  # share in rods that counts as least in a ratio
-SETTLED = {
-    "d": "0.2 cm",
-    "k_n": "100 N/cm",
-    "restitution": "0.7",
-    "bed": "20 columns of grains over fixed ones of random height",
-    "water": "column, 2 cm deep",
-    "window": "1 to 2 s",
-    "rod": "movers that touch (gap below 0.05 d) throughout 0.07 s = 5 sqrt(d/g), in which they go 1 d "
-    "or more and turn about each other by less than 15 deg",
-    "null model": "every mover goes the way of one picked from its layer and any window",
-}
 Runs = Sequence[tuple[MovableBedRun, MovableBedRun]]  # locked and free, by seed
 
 measure = _movable_bed.measure
@@ -130,16 +120,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     shipped = _both(found, plan, SHIPPED)
     if _movers([locked for locked, _ in shipped]) >= MOVERS:
         tried.append(Trial(PART_LESS, SHIPPED, _jackknife(_difference, shipped, 1.0), None))
-    return (
-        Finding(
-            "fig22",
-            tuple(tried),
-            "A locked grain cannot roll out of the pocket between two others; it moves only with its row. "
-            "Touching neighbours therefore keep their arrangement and creep together.",
-            SETTLED,
-            also=tuple(_words(found, plan, one) for one in settings(plan)),
-        ),
-    )
+    return (finding("fig22", tried, also=[_words(found, plan, one) for one in settings(plan)]),)
 
 
 def _words(found: Found, plan: Plan, chosen: Mapping[str, str]) -> str:

@@ -11,6 +11,7 @@ from ryusa.study.interval import magnitude
 from ryusa_studies.osada2004 import _movable_bed
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import halves
@@ -97,25 +98,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         tried.append(seeds_trial(PART_SPIN, one, spins, band("fig22-free", PART_SPIN)))
         tried += [_changed(part, one, bare, resisted) for part in RATIOS]
     return (
-        Finding(
+        finding(
             "fig22-free",
-            tuple(tried),
-            "A grain that may rotate rolls over the bed; what resists its spin takes momentum from it at "
-            f"every contact, or from the water. {_words(found, plan, SHIPPED)}.",
-            {
-                "d": "0.2 cm",
-                "k_n": "100 N/cm",
-                "restitution": "0.7",
-                "bed": "20 columns of grains over fixed ones",
-                "water": "column, 2 cm deep, steady at the beginning",
-                "rotation": "free",
-                "window": "1 to 2 s",
-            },
-            also=tuple(
+            tried,
+            also=[
                 f"{', '.join(value for key, value in one.items() if value != SHIPPED[key])}: "
                 f"{_words(found, plan, one)}"
                 for one in settings(plan)[1:]
-            ),
+            ],
+            shipped=_words(found, plan, SHIPPED),
         ),
     )
 

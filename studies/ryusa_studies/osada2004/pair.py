@@ -12,6 +12,7 @@ from ryusa.study import Band, Finding, Trial, over_range
 from ryusa_studies.osada2004 import _drops, fig05
 from ryusa_studies.osada2004._drops import EXACT, Setup
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import drop_chart
 
@@ -71,17 +72,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     if one_dashpot:
         e = np.median(found[two(one_dashpot[0], springs[-1])[0].task].e)
         also.append(f"one dashpot for both: e = {e:.2f} between free grains where it is 0.7 on a fixed one")
-    return (
-        Finding(
-            "pair",
-            tuple(trials),
-            "Two free grains oscillate about their common centre with half the mass, so Eq. (8) gives a "
-            f"factor of {0.5**0.5:.3f} in time, whatever the dashpot. With a fixed partner weight acts in "
-            "addition.",
-            {"restitution": "0.7", "d": _drops.DIAMETER},
-            also=tuple(also),
-        ),
-    )
+    return (finding("pair", trials, also=also),)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

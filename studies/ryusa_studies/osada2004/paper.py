@@ -21,16 +21,6 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Symbol:
-    """One symbol of the paper, its name in the code and its SI unit."""
-
-    paper: str
-    code: str
-    unit: str
-    means: str
-
-
-@dataclass(frozen=True)
 class Reading:
     """One doubt and how it was settled."""
 
@@ -43,6 +33,5 @@ class Reading:
 _GIVEN = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 CITATION: str = _GIVEN["citation"]
 EQUATIONS = {number: Equation(number, **one) for number, one in _GIVEN["equations"].items()}
-SYMBOLS = tuple(Symbol(*row) for row in _GIVEN["symbols"])
 QUESTIONS: list[dict[str, Any]] = _GIVEN["questions"]  # title, anchor, about, claims
 READINGS = {id: Reading(id, **one) for id, one in _GIVEN["readings"].items()}

@@ -13,6 +13,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Interval, Trial, case_run, not_negative, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _heap, rolling_friction
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._rolling_fit import HeapFit, limits
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
@@ -26,11 +27,6 @@ COEFFICIENTS = ("0.25", "0.5", "1", "2")  # the box
 ANGLES = ("30 deg", "20 deg", "40 deg")  # settings, the first as shipped
 # Coefficient of each setting, by the rule of the registration.
 FITTED: Mapping[str, str] = {"30 deg": "0.5", "20 deg": "1", "40 deg": "1"}
-FIT = (
-    "fitted on 28 November 2026, seeds 1 to 4, before any blind run: no coefficient of the box gives 38 deg "
-    "at any friction angle (at most 34.3, 35.7 and 35.0 deg at 30, 20 and 40 deg), so that each is the "
-    "smallest within one standard error of the nearest"
-)
 STEPS, STEPS_EACH = 10.0, 20.0  # in the shortest contact: at least, and for each unit of the coefficient
 PARTNERS = 6  # in a plane packing, for which STEPS_EACH is stable
 WATER_EACH = 3.3  # steps between two exchanges of water and grains, over those in a contact
@@ -173,18 +169,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             for one in _blind(found, plan, NONE, ANGLES[0], {})
         ]
     return [
-        Finding(
-            CLAIMS[0],
-            tuple(trials),
-            "A contact slides before it rolls as soon as mu_r is above 2 tan of the friction angle (equal "
-            "spheres): from there on a heap gets no steeper. Steps: at least "
-            f"{STEPS_EACH:g} mu_r in the shortest contact, which keeps the springs of a grain with "
-            f"{PARTNERS} partners stable. {_edges(found, plan)}",
-            {"rotation": "free", "law": "spring-dashpot-slider, cap mu_r R* N", "coefficients": FIT},
-            also=_words(found, plan),
-            beside=tuple(beside),
+        finding(
+            CLAIMS[0], trials, also=_words(found, plan), beside=beside, steps=STEPS_EACH, partners=PARTNERS,
+            edges=_edges(found, plan),
         )
-    ]
+    ]  # fmt: skip
 
 
 def _fit(found: Found, plan: Plan, angle: str) -> HeapFit:

@@ -14,6 +14,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Interval, Trial, not_negative, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._rolling_fit import SlopeFit, SpinFit, best_pair, limits, resampled_pairs
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
@@ -147,17 +148,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for one in STRESSES
     }
     return [
-        Finding(
+        finding(
             "rolling-friction",
-            tuple(trials),
-            "A heap rests on contacts that are loaded all the time, a saltating grain meets the bed for a "
-            "ten-thousandth of a second at a time, and a torque f N acts on both in proportion to the load.",
-            {"rotation": "free", "law": "spring-dashpot-slider, cap mu_r R* N"},
+            trials,
             also=(
                 *(f"tau_star at the bed, {one} asked: {short(mean)}" for one, mean in stress.items()),
                 *_words(found, plan),
             ),
-            beside=tuple(beside),
+            beside=beside,
         )
     ]
 

@@ -11,6 +11,7 @@ from ryusa.study import Band, Finding, Interval, Trial, over_range
 from ryusa_studies.osada2004 import _drops
 from ryusa_studies.osada2004._drops import AT_STEPS, COPIES, NO_TENSION, TENSION, DropRun, Setup
 from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import ReboundCurve, rebounds
 from ryusa_studies.osada2004.forward_euler import restitution
@@ -107,16 +108,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     words = [f"{name} {values.min():.2f} to {values.max():.2f}" for name, values in at_ten.items()]
     stable = _stable(TENSION)
     return (
-        Finding(
+        finding(
             "steps",
-            tuple(trials),
-            "Forward differences add energy to an oscillator in every step, which the dashpot must "
-            f"dissipate: with fewer than pi/(2 zeta) steps, {stable:.0f} with tension, grains separate "
-            "faster than they approached. The semi-implicit scheme, velocity first and then position, adds "
-            "none; nor does a spring force summed as in Eq. (1), which is one step ahead of the overlap, "
-            f"unless the dashpot may pull. At ten steps e is: {', '.join(words)}.",
-            {"k_n": "100 N/cm", "fewest steps": "5; the case reader refuses fewer"},
-            also=tuple(_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)),
+            trials,
+            also=[_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)],
+            stable=stable,
+            words=", ".join(words),
         ),
     )
 
