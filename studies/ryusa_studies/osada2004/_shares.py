@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from scipy import stats
 
-from ryusa.study import CONFIDENCE, Band, Interval, Trial, exact
+from ryusa.study import CONFIDENCE, Band, Interval, Trial, exact, not_negative, seeds_trial
 
 Item = TypeVar("Item")  # of one seed
 
@@ -52,6 +52,12 @@ def within_0_1(found: Interval) -> Interval:
     if math.isnan(found.value):
         return found
     return replace(found, low=max(0.0, found.low), high=min(1.0, found.high))
+
+
+def positive(part: str, choices: Mapping[str, str], values: Sequence[float], band: Band) -> Trial:
+    """Return the trial of the mean over seeds of a number that cannot be negative."""
+    trial = seeds_trial(part, choices, values, band)
+    return replace(trial, found=not_negative(trial.found))
 
 
 def halves(

@@ -13,12 +13,13 @@ from ryusa.laws.rolling import rolling_arm_width
 from ryusa.measure import spin
 from ryusa.model.tally import LOSSES, Term
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, not_negative, over_seeds, seeds_trial
+from ryusa.study import Finding, Interval, Trial, over_seeds, seeds_trial
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._shares import positive
 
 FIGURE = "fig23"
 TITLE = "Eq. (13): a moment against the torque of the shear force"
@@ -105,8 +106,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             continue
         plain = [found[without(chosen, seed)].spin for seed in plan.seeds]
         ratios = [one.spin / other for one, other in zip(group, plain, strict=True)]
-        trial = seeds_trial(SPIN, chosen, ratios, BANDS[SPIN])
-        trials.append(Trial(SPIN, chosen, not_negative(trial.found), BANDS[SPIN], halves=trial.halves))
+        trials.append(positive(SPIN, chosen, ratios, BANDS[SPIN]))
         trials.append(seeds_trial(ENERGY, chosen, [one.taken for one in group], BANDS[ENERGY]))
     beside: list[Trial] = []
     for limit in _limits(plan):

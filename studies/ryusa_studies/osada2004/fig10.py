@@ -16,12 +16,12 @@ from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, vibrating_sh
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, not_negative, seeds_trial, short
+from ryusa.study import Finding, Interval, Trial, short
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._factors import FULL, design
 from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
-from ryusa_studies.osada2004._shares import share_interval, share_trial
+from ryusa_studies.osada2004._shares import positive, share_interval, share_trial
 from ryusa_studies.osada2004.figures.vibration_threshold import over_threshold
 from ryusa_studies.osada2004.forward_euler import integrate, step
 
@@ -183,8 +183,7 @@ def _both(plan: Plan, found: Found) -> tuple[list[Trial], list[Trial]]:
         runs, stiffs = ([found[_run(one, k, seed)] for seed in plan.seeds] for k in (SOFT, STIFF))
         soft.append(share_trial(SOFT_PART, one, _vibrating(runs, one), GRAINS, HALF))
         late = [rests(run.by(one[SCHEME]), one[THRESHOLD], one[MOVED]) for run in stiffs]
-        trial = seeds_trial(STIFF_PART, one, late, REST)
-        stiff.append(Trial(trial.part, one, not_negative(trial.found), REST, halves=trial.halves))
+        stiff.append(positive(STIFF_PART, one, late, REST))
     return soft, stiff
 
 
