@@ -18,6 +18,7 @@ from ryusa.results import Results
 from ryusa.running.runner import run
 from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.river_dam_break import whole
 
 DECLARED = declared(__file__)
 
@@ -45,13 +46,13 @@ def fed() -> dict[str, Floats]:
     """
     with TemporaryDirectory() as folder:
         even = read(case_path(f"{REACH}.toml"), {"seed": str(SEED)})
-        _whole(run(even, f"{folder}/reach", progress=False))
+        whole(run(even, f"{folder}/reach", progress=False))
         path = case_path(f"{CASE}.toml")
         text = path.read_text(encoding="utf-8")
         case = read_text(text, {**FED, "seed": str(SEED)}, path=Path(folder) / path.name)
         reach = reach_of(case)
         assert reach is not None
-        done = _whole(run(case, f"{folder}/river", progress=False))
+        done = whole(run(case, f"{folder}/river", progress=False))
         volume = float((np.pi / 6.0 * reach.d**3).sum())
         due = len(repeated(case, reach).t)
         entered = int((done.passages["way"] == IN).sum())
@@ -84,12 +85,6 @@ def _passed(done: Results, q: float, q_s: float) -> dict[str, Floats]:
     carried = float((passed[-1] - passed[0])[part].mean() / (t[-1] - t[0])) / q_s
     off = np.abs(found.discharge[frames, 0] / q - 1.0).max()
     return {"carried": np.array(carried), "discharge": np.array(float(off))}
-
-
-def _whole(done: Results) -> Results:
-    if not done.complete:
-        raise KeyboardInterrupt
-    return done
 
 
 def _task() -> Task:
