@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -119,24 +120,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             [(one.soft.touching, one.stiff.touching) for one in base],
         )
     )
-    why = (
-        "The collision time matters for two reasons. In Eq. (3) a sliding contact keeps its dashpot, "
-        "which is proportional to the square root of k_n and has no cap: in enduring contacts it acts "
-        f"like viscosity, and locked grains creep at {slow} m/s with {STIFF} (closed form; {fast} m/s with "
-        f"{SOFT} is not a limit). And long contacts overlap in time: {rate} contacts a second, {touching} "
-        "partners at a time, so that a contact has not ended when the next begins."
-    )
     tops = [one for one in tried_sets if one[SLIP] != "spring"]
     left = "; ".join(f"{_avalanche.label(one)}: {text(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
+    words: dict[str, Any] = {"slow": slow, "fast": fast, "rate": rate, "touching": touching}
     return (
         finding(
             "fig15",
-            (
-                *tried(DEPTH_MEAN, together(depth_mean), ABOUT),
-                *tried(LEAST, least, WHOLE),
-                *flow,
-            ),
+            [*tried(DEPTH_MEAN, together(depth_mean), ABOUT), *tried(LEAST, least, WHOLE), *flow],
             also=(
                 *(
                     f"speed, {_avalanche.label(one)}: {text(soft_speed, one)} m/s with {SOFT}, "
@@ -145,24 +136,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
             ),
-            why=why,
             shipped=text(depth_mean, SHIPPED),
             windows=windows,
+            **words,
         ),
         finding(
             "fig15-flux",
-            (
-                *tried(FLUX, apart(flux_of), MORE),
-                *tried(ALIKE_PART, together(unlike), ALIKE),
-                *flow,
-            ),
+            [*tried(FLUX, apart(flux_of), MORE), *tried(ALIKE_PART, together(unlike), ALIKE), *flow],
             also=[
                 f"flux ratio, {_avalanche.label(one)}: {text(flux_ratio, one)} at {windows}"
                 for one in tried_sets
             ],
             shipped=text(flux_ratio, SHIPPED),
             windows=windows,
-            why=why,
+            **words,
         ),
     )
 
