@@ -8,6 +8,7 @@ that changes, the first entry of its band names the number that it judged.
 import ast
 import hashlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from ryusa.study import Band
 from ryusa.study.registration import TEXTS, RegisteredClaim, limits_of
 from ryusa_studies import validation
 from ryusa_studies.osada2004.study import PAPER
+from ryusa_studies.validation.declared import FOLDER, Declared, declared
 from ryusa_studies.validation.study import VALIDATION
 
 LISTED = Path(__file__).with_name("registered.txt")
@@ -28,9 +30,9 @@ GONE = """
 
 No longer so, but listed in registered.txt: an entry was edited in place or taken away. Put it back as it was,
 and write the change as a further entry beside it: [[claim.band]] with its date and `change`, or for a text
-[[claim.changed]] with its wording before. A band that only the code of a validation had goes into its
-registration as the first of two entries, in the file named after the module; its reason stays as it was, or
-is the expression that made it, where the limits depend on what is measured. Then: {add}
+[[claim.changed]] with its wording before. A band that only comparisons/ or the code of a validation had goes
+into its registration as the first of two entries, in the file named after the module; its reason stays as it
+was, or is the expression that made it, where the limits depend on what is measured. Then: {add}
 """
 NEW = "\n{lines}\n\nNew, and not yet listed in registered.txt. Add it: {add}"
 
@@ -51,9 +53,28 @@ def of_claim(study: str, claim: RegisteredClaim) -> Iterator[str]:
             yield f"text | {study} {claim.id} | {key} | {_digest(whole)}"
 
 
+def in_data() -> Iterator[tuple[str, str, str, Band]]:
+    """Each band that comparisons/ states: module, finding, part with its word, band."""
+    for path in sorted(FOLDER.glob("*.toml")):
+        for one in declared(str(path)).values():
+            for name, given in one.given.get("errors", {}).items():
+                part = given if isinstance(given, str) else given["part"]
+                for word in _words(given):
+                    band = one.band(name, word)
+                    if band is not None:
+                        yield path.stem, one.id, part.replace("{}", word or "{}"), band
+
+
+def _words(given: str | Mapping[str, object]) -> list[str]:
+    """Words by which limits differ; an empty one where they do not."""
+    tables = [] if isinstance(given, str) else [one for one in given.values() if isinstance(one, Mapping)]
+    return list(dict.fromkeys(str(word) for one in tables for word in one)) or [""]
+
+
 def in_code() -> Iterator[str]:
     """Each band that a part of the validation states in its code."""
-    for path in sorted(Path(validation.__file__).parent.glob("*.py")):
+    own = Path(validation.__file__).parent.glob("*.py")
+    for path in sorted(one for one in own if one.stem != Declared.__module__.rpartition(".")[2]):
         names = vars(import_module(f"{validation.__name__}.{path.stem}"))
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if (
@@ -78,19 +99,24 @@ def _stated(stem: str, band: Band) -> str:
 def registered() -> set[str]:
     """Lines of today."""
     claims = [(name, claim) for name, whole in STUDIES.items() for claim in whole.claims.values()]
-    return {*in_code(), *(line for name, claim in claims for line in of_claim(name, claim))}
+    data = (f"data | {' | '.join(at)} | {limits_of(band)} | {band.says}" for *at, band in in_data())
+    return {*data, *in_code(), *(line for name, claim in claims for line in of_claim(name, claim))}
 
 
 def moved() -> set[str]:
-    """Bands that code may have had before: what stands registered has their limits and reason.
+    """Bands that code may have had before: what stands registered, or as data, has their limits and reason.
 
-    Of one whose limits depend on what is measured the reason is the expression that made it.
+    Of one whose limits depend on what is measured the reason is the expression that made it. Code left the
+    unit to the number that is judged, and river_bands.py had the bands of all parts of the river.
     """
     whole, found = STUDIES[VALIDATION.name], set[str]()
     for claim in whole.claims.values():
         stem = whole.paths[claim.id].stem
         bands = [one.band for one in claim.bands if one.band is not None]
         found |= {line for band in bands for line in (_stated(stem, band), f"code | {stem} | {band.says}")}
+    for stem, _, _, band in in_data():
+        for stem_then in (stem, *(("river_bands",) if stem.startswith("river") else ())):
+            found |= {_stated(stem_then, one) for one in (band, replace(band, unit="-"))}
     return found
 
 

@@ -12,18 +12,10 @@ from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
 from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Band, Design, Factor, Trial, exact, over_seeds, pseudo_values, seeds_trial
+from ryusa.study import Band, Trial, over_seeds, pseudo_values, seeds_trial
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    ROTATION_FREE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parts import (
-    PACKING,
     PARTING,
     PHI,
     RATIO,
@@ -33,6 +25,7 @@ from ryusa_studies.osada2004._parts import (
     Plan,
     paper_run,
 )
+from ryusa_studies.osada2004._shares import halves
 
 CASE = "avalanche"
 TILT = 1.0  # of the case's timeline [s]
@@ -46,32 +39,8 @@ TIMES = (SOFT, STIFF)
 WINDOW = "time after tilting"
 WINDOWS = {"1 to 2 s": (1.0, 2.0), "2 to 3 s": (2.0, 3.0)}
 FIRST = "1 to 2 s"
-AS_SHIPPED = "as shipped"
-DESIGN = Design(
-    (
-        ROTATION_FREE,
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        Factor(
-            PACKING,
-            {
-                AS_SHIPPED: {},
-                "sizes within 10 %": {"grains.spread": "0.1"},
-                "random bed": {"build.bed": "random"},
-                "twice as deep": {"build.layers": "20"},
-            },
-        ),
-    )
-)
+DESIGN = design("avalanche")
 SHIPPED = DESIGN.base
-SETTLED = {
-    "d": "20 cm",
-    "slope": "40 deg",
-    "restitution": "0.7",
-    "packing as shipped": "equal grains, 10 layers over a flat bed of grains",
-}
 BETWEEN, ALL = "between bed and movers", "all"  # grains whose ways are compared
 FINE = 0.001  # vertical excursion, in diameters, from which the finest turns count
 UNITS = {
@@ -226,9 +195,7 @@ def _places(runs: Sequence[Profiles]) -> tuple[int, int]:
     return low, max(int(_numbers(one)[-1]) for one in runs) - low + 1
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def run(chosen: Mapping[str, str], time: str, seed: int) -> CaseRun:
@@ -341,13 +308,9 @@ def together(value: Numbers) -> Judged:
     def judged(part: str, chosen: Mapping[str, str], found: Sequence[RunPair], limits: Band) -> Trial:
         kept = [pair for pair in found if math.isfinite(value([pair]))]
         kept = kept if 2 * len(kept) > len(found) else found
-        one, other = (
-            limits.holds(exact(value(kept[half::2]), limits.unit)) if len(kept) > half else None
-            for half in (0, 1)
-        )
         spread = over_seeds(pseudo_values(value, kept), limits.unit)
         how = f"jackknife, {spread.how}" if spread.n > 1 else spread.how
-        return Trial(part, chosen, replace(spread, how=how), limits, halves=(one, other))
+        return Trial(part, chosen, replace(spread, how=how), limits, halves=halves(kept, value, limits))
 
     return judged
 

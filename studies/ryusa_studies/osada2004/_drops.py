@@ -1,7 +1,7 @@
 """What the experiments about one contact share: the drop, its phases of first touch, what is kept of it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,9 +20,9 @@ from ryusa.laws.drag import volume
 from ryusa.measure import collisions, contact_times
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Band, Factor, Interval, over_range
+from ryusa.study import Band, Interval, over_range
 from ryusa.units import quantity
-from ryusa_studies.osada2004._parts import CaseRun, Found, paper_run
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 CASE = "drop"
 COPIES = 20  # phases of first touch
@@ -218,11 +218,6 @@ def _passed(run: Results, copies: int) -> int:
     return int(np.sum(run.frames[-1].x[:copies, 2] < 0.5 * run.scene.d[:copies]))
 
 
-def choice(name: str, *levels: str) -> Factor:
-    """Return a factor whose levels a `Setup` takes by name, the first as shipped."""
-    return Factor(name, {one: {} for one in levels})
-
-
 def near(value: float, unit: str, says: str) -> Band:
     """Within 10 % of a number that the paper gives as "about"."""
     return Band(
@@ -230,8 +225,21 @@ def near(value: float, unit: str, says: str) -> Band:
     )
 
 
-def rows(setups: Sequence[Setup], found: Found) -> list[dict[str, object]]:
-    """One line per drop: the middle over its phases, and the extremes of e."""
+Setups = Callable[[Plan], Sequence[Setup]]
+
+
+def tasks_of(setups: Setups) -> Callable[[Plan], Sequence[CaseRun]]:
+    """The tasks of a part: one run per setup; there is no chance in them, so every seed gives the same."""
+    return lambda plan: [one.task for one in setups(plan)]
+
+
+def rows_of(setups: Setups) -> Callable[[Found, Plan], list[dict[str, object]]]:
+    """The table of a part, one line per drop."""
+    return lambda found, plan: _rows(setups(plan), found)
+
+
+def _rows(setups: Sequence[Setup], found: Found) -> list[dict[str, object]]:
+    """The middle of each drop over its phases, and the extremes of e."""
     lines: list[dict[str, object]] = []
     for one in setups:
         drop: DropRun = found[one.task]

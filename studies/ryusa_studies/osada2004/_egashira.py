@@ -8,12 +8,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 from scipy.optimize import brentq
 
-from ryusa.laws.debris import (
-    collision_factor,
-    pore_factor,
-    static_share,
-    velocity_egashira,
-)
+from ryusa.laws.debris import collision_factor, pore_factor, static_share, velocity_egashira
 from ryusa.measure.formulae import K_D, K_F
 from ryusa.measure.statistics import Floats
 

@@ -1,9 +1,18 @@
-"""Free choices that the paper leaves open, with their levels; a part takes those that touch its claims."""
+"""Free choices that the paper leaves open, designs.toml; a part takes those that touch its claims."""
 
-from ryusa.study import Factor, Plan
-from ryusa_studies.osada2004._parts import CLOSURE, DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ryusa.study import Design, Factor, Plan
 
 STANDARD, FULL = 16, 32  # settings beside the one as shipped: whole blocks of the design
+Levels = Mapping[str, Mapping[str, str]]  # keys of the case that each level changes, with their values
+
+_GIVEN: Mapping[str, Any] = tomllib.loads(
+    Path(__file__).with_name("designs.toml").read_text(encoding="utf-8")
+)
 
 
 def n_settings(plan: Plan) -> int:
@@ -11,33 +20,20 @@ def n_settings(plan: Plan) -> int:
     return plan.pick(0, STANDARD, FULL)
 
 
-def friction_angle(key: str = "contact.friction_angle") -> Factor:
-    """Friction angle of grains; the paper never gives it."""
-    return Factor(PHI, {"30 deg": {}, **{one: {key: one} for one in ("10 deg", "20 deg", "40 deg")}})
+class OpenChoices(Design):
+    """The free choices of a part."""
+
+    def sets(self, plan: Plan) -> list[dict[str, str]]:
+        """Settings of a level, the one as shipped first."""
+        return self.settings(n_settings(plan))
 
 
-SLIP_RULE = Factor(
-    SLIP, {"spring": {}, "spring-drop": {"contact.slip": "spring-drop"}, "total": {"contact.slip": "total"}}
-)
-PARTING_RULE = Factor(PARTING, {"no tension": {}, "tension": {"contact.parting": "tension"}})
-STIFFNESS_RATIO = Factor(RATIO, {"2/7": {}, "15/200": {"contact.shear_ratio": "0.075"}})
-# only where the paper does not say it; else a part compares both
-ROTATION_FREE = Factor(ROTATION, {"free": {}, "locked": {"motion.rotation": "locked"}})
-DRAG_LAW = Factor(
-    DRAG,
-    {
-        "24/Re+0.4": {},
-        "24/Re+2": {"water.drag": "24/Re+2"},
-        "Schiller-Naumann": {"water.drag": "Schiller-Naumann"},
-    },
-)
-# Eq. (9): where z begins, and the roughness, for the profile that grains do not change
-LOG_LAW = Factor(
-    CLOSURE,
-    {
-        "z from d/4 below the crest, k_s = d": {},
-        "z from the crest": {"water.zero": "0.2 cm"},
-        "z from the centres": {"water.zero": "0.1 cm"},
-        "k_s = 2 d": {"water.roughness": "0.4 cm"},
-    },
-)
+def design(name: str, own: Mapping[str, Levels] | None = None) -> OpenChoices:
+    """Return the design of that name; `own` has levels that follow from an equation, by factor."""
+    given = _GIVEN[name]
+    levels = _GIVEN["shared"] | _GIVEN.get(given.get("of"), {}) | given | (own or {})
+    return OpenChoices(tuple(_factor(one, levels[one]) for one in given["factors"]))
+
+
+def _factor(name: str, levels: Levels | list[str]) -> Factor:
+    return Factor(name, levels if isinstance(levels, Mapping) else {one: {} for one in levels})

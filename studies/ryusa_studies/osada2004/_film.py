@@ -2,16 +2,8 @@
 
 from dataclasses import dataclass
 
-from ryusa.study import Design, Factor
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    DRAG_LAW,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-)
-from ryusa_studies.osada2004._parts import ROTATION
+from ryusa_studies.osada2004._factors import design
 
 SECTION = "section 3, after Fig. 7"
 JAPANESE = (
@@ -33,49 +25,10 @@ PART = f"mean time in contact on a film of {FPS:g} frames per second"
 SEEN = band("film-saltation", PART)  # the same for all flows
 SLOWER = (250.0, 100.0)  # shown beside it, not judged: 4 and 10 ms from one frame to the next
 COLLISION = "collision time"
-COLLISIONS = ("1e-4 s", "1e-5 s")  # that of the paper; by Hertz that of 2 mm quartz at 0.05 to 0.5 m/s
-FILM = "water film"
 RESOLUTION = "resolution"
 RESOLUTIONS = ("0.05 d", "0.02 d", "0.1 d")  # gap from which two grains look apart: d is 20, 50 or 10 pixels
-# Keys of the case for each collision time, by flow; the first is that of the figure.
-SPRINGS: dict[str, tuple[dict[str, str], dict[str, str]]] = {
-    "film-saltation": ({}, {"contact.stiffness": "10000 N/cm"}),
-    "film-avalanche": (
-        {"contact.stiffness": '{ collision_time = "0.0001 s" }'},
-        {"contact.stiffness": '{ collision_time = "0.00001 s" }'},
-    ),
-    "film-debris": ({}, {"contact.stiffness": "20000 N/cm", "contact.shear_stiffness": "1500 N/cm"}),
-}
-WATERS: dict[str, dict[str, str]] = {
-    "none": {},
-    "lubrication": {"water.film": "lubrication", "water.asperity": "0.01 mm"},
-    "rebound by Stokes number": {"water.rebound": "exponential", "water.rebound_least": "0.1"},
-}
-
-
-def _design(claim: str, *more: Factor, wet: bool = True) -> Design:
-    """Factors of one flow: springs, water film, friction, and what else is open in it."""
-    springs = Factor(COLLISION, dict(zip(COLLISIONS, SPRINGS[claim], strict=True)))
-    film = (Factor(FILM, WATERS),) if wet else ()
-    return Design((springs, *film, friction_angle(), SLIP_RULE, PARTING_RULE, *more))
-
-
 # The resolution is a way of looking at the same run: a factor as well, without runs of its own.
-DESIGNS = {
-    "film-saltation": _design(
-        "film-saltation",
-        STIFFNESS_RATIO,
-        Factor(ROTATION, {"locked": {}, "free": {"motion.rotation": "free"}}),
-        DRAG_LAW,
-    ),
-    "film-avalanche": _design(
-        "film-avalanche",
-        STIFFNESS_RATIO,
-        Factor(ROTATION, {"free": {}, "locked": {"motion.rotation": "locked"}}),
-        wet=False,
-    ),
-    "film-debris": _design("film-debris"),
-}
+DESIGNS = {one: design(one) for one in ("film-saltation", "film-avalanche", "film-debris")}
 
 
 @dataclass(frozen=True)
@@ -85,12 +38,10 @@ class FilmedFlow:
     Attributes
     ----------
     case : case file of the figure that it is taken from.
-    setup : in words.
     changed : keys of the case that are set, and their values.
     """
 
     case: str
-    setup: str
     changed: dict[str, str]
 
 
@@ -101,13 +52,10 @@ _FRAMES = {
 FLOWS = {
     "film-saltation": FilmedFlow(
         "saltation",
-        "16 saltating grains of 0.2 cm over fixed ones, as in fig7, rotation locked; filmed for 0.5 s",
         {"build.starts": "16", "record.settle": "0.5 s", "stop.time": "1 s", **_FRAMES},
     ),
     "film-avalanche": FilmedFlow(
         "avalanche",
-        "dry avalanche on 40 deg, as in fig14, of 100 grains of 0.2 cm, the size of laboratory films: "
-        "lengths over 100, times over 10 by Froude; filmed from 0.1 to 0.3 s after tilting",
         {
             "grains.diameter": "0.2 cm",
             "build.columns": "10",
@@ -119,8 +67,6 @@ FLOWS = {
     ),
     "film-debris": FilmedFlow(
         "fig17",
-        "Ito's debris flow, as in fig17, rotation locked; its dashpots given as restitution 0.7, tangential "
-        "0.9; filmed for 0.25 s",
         {
             "contact.restitution": "0.7",
             "contact.restitution_shear": "0.9",

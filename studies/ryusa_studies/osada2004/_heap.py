@@ -16,8 +16,6 @@ CASE = "fig19"
 PHI_KEY = "timeline.0.friction_angle"
 FITS = ("0.1 to 0.9", "0.2 to 0.8", "0.25 to 0.75")  # beside the shipped 0.15 to 0.85 of the heap's height
 MEAN = "mean of four"
-RANGES = (MEAN, "0.1 to 0.9", "0.25 to 0.75")  # of height, from which the slope is read
-MOVING = 0.01  # share of grains that may still move in a heap that is called at rest
 MOST = 0.5  # of the heaps of a setting
 
 

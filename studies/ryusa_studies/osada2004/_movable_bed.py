@@ -9,27 +9,10 @@ import numpy as np
 from ryusa.measure import Profiles, Rods, Snapshot, profiles, rods, snapshot, transport
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Factor, short
-from ryusa_studies.osada2004._parts import CLOSURE, CaseRun
+from ryusa.study import short
+from ryusa_studies.osada2004._parts import CaseRun
 
 MOMENTS = 3  # drawn of a rod
-
-
-def water_of_a_bed(start: str) -> Factor:
-    """What the column leaves open over a movable bed."""
-    return Factor(
-        CLOSURE,
-        {
-            "Li-Sawamoto over a moving bed": {},
-            "eddies in pores, k_f 0.16": {"water.column.pore_eddies": "0.16"},
-            "parabolic mixing length": {
-                "water.column": f'{{ start = "{start}", bed = "moving", mixing_length = "parabolic", '
-                "interval = 42 }"
-            },
-            "buoyancy by weight": {"water.buoyancy": "weight"},
-            "hindrance Richardson-Zaki": {"water.hindrance": "Richardson-Zaki"},
-        },
-    )
 
 
 @dataclass(frozen=True)

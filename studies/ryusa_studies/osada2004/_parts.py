@@ -11,39 +11,11 @@ __all__ = [
 ]  # fmt: skip
 
 NAMES = (
-    "fig04",
-    "fig05",
-    "pair",
-    "fig07",
-    "spin_time",
-    "film",
-    "fig08",
-    "fig10",
-    "steps",
-    "fig11",
-    "fig12",
-    "fig12_avalanche",
-    "hops",
-    "fig14",
-    "fig15",
-    "fig16",
-    "fig17",
-    "fig17_egashira",
-    "fig17_free",
-    "fig18",
-    "long_contacts",
-    "fig19",
-    "bed18",
-    "fig20",
-    "fig21",
-    "fig22",
-    "fig22_free",
-    "eq13",
-    "rolling_friction",
-    "rolling_blind",
-    "water_torque",
-    "debris_river",
-)
+    "fig04", "fig05", "pair", "fig07", "spin_time", "film", "fig08", "fig10", "steps", "fig11", "fig12",
+    "fig12_avalanche", "hops", "fig14", "fig15", "fig16", "fig17", "fig17_egashira", "fig17_free",
+    "fig18", "long_contacts", "fig19", "bed18", "fig20", "fig21", "fig22", "fig22_free", "eq13",
+    "rolling_friction", "rolling_blind", "water_torque", "debris_river",
+)  # fmt: skip
 
 # Free choices that several parts share: one name each, so that the page can lay them side by side.
 PHI = "friction angle"

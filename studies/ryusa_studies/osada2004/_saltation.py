@@ -10,17 +10,9 @@ import numpy as np
 from ryusa.measure import Saltation, Tracks, collisions, saltation, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Interval, Pooled, Trial, over_seeds, pool, seeds_trial
+from ryusa.study import Interval, Pooled, Trial, over_seeds, pool, seeds_trial
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    DRAG_LAW,
-    LOG_LAW,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
+from ryusa_studies.osada2004._factors import design
 from ryusa_studies.osada2004._parts import (
     CLOSURE,
     DRAG,
@@ -46,30 +38,7 @@ SKIM = 0.3  # speed times contact time over diameter from which a grain skims th
 
 # The free choices of all of them: one design, so that they share their runs. Each takes the factors that
 # touch its claims; k_n, torque law and Re are no choice of all.
-DESIGN = Design(
-    (
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        DRAG_LAW,
-        LOG_LAW,
-        Factor(START, {FLOWING: {}, RESTING: {"build.start_speed": "0 m/s", "build.start_height": "0.1 cm"}}),
-        Factor(
-            K_N,
-            {STIFF: {}, **{one: {"contact.stiffness": one} for one in (SOFT, "10 N/cm", "1000 N/cm")}},
-        ),
-        Factor(TORQUE, {one: {"water.torque": one} for one in ("Dennis", "Stokes")}),
-        Factor(
-            RE,
-            {
-                "in cold water": {},
-                "a quarter of it": {"water.viscosity": "4e-6 m2/s"},
-                "four times it": {"water.viscosity": "2.5e-7 m2/s"},
-            },
-        ),
-    )
-)
+DESIGN = design("saltation")
 SHARED = (PHI, SLIP, PARTING, RATIO, DRAG, CLOSURE, START)
 SHIPPED = {name: DESIGN.base[name] for name in SHARED}
 # Series over stiffness of the figures, the case as it ships; it judges nothing.
@@ -122,7 +91,7 @@ Group = Sequence[SaltationRun]  # the runs of one setting, by seed
 def settings(plan: Plan, *more: str) -> list[dict[str, str]]:
     """Sets of the shared choices and of those named; the shipped one first."""
     names = (*SHARED, *more)
-    sets = [{name: one[name] for name in names} for one in DESIGN.settings(n_settings(plan))]
+    sets = [{name: one[name] for name in names} for one in DESIGN.sets(plan)]
     return list({tuple(one.items()): one for one in sets}.values())
 
 
@@ -167,6 +136,12 @@ def hops(results: Results) -> SaltationRun:
         impact=float((touch.events["impulse_n"][lone] / momentum).mean()) if lone.any() else math.nan,
         spreads={TANGENTIAL: spread(touch.restitution_s), NORMAL: spread(touch.restitution)},
     )
+
+
+def measure(results: Results, one: CaseRun) -> SaltationRun:
+    """Hops of all starts."""
+    del one
+    return hops(results)
 
 
 def spread(values: Floats) -> float:

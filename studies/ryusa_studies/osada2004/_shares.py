@@ -1,12 +1,16 @@
-"""Shares, of runs or of grains in runs, with intervals that stay between 0 and 1."""
+"""Shares, of runs or of grains in runs, with intervals between 0 and 1; what each half of the seeds says."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from scipy import stats
 
-from ryusa.study import CONFIDENCE, Band, Interval, Trial, exact
+from ryusa.study import CONFIDENCE, Band, Interval, Trial, exact, not_negative, seeds_trial
+
+Item = TypeVar("Item")  # of one seed
 
 
 def share_interval(hits: Sequence[float], of: int) -> Interval:
@@ -43,12 +47,33 @@ def share_interval(hits: Sequence[float], of: int) -> Interval:
     return Interval(share, low, high, "-", len(hits), f"95 % of the share of {what}, Wilson")
 
 
+def within_0_1(found: Interval) -> Interval:
+    """The interval of a share, which cannot leave 0 to 1; one without a number as it is."""
+    if math.isnan(found.value):
+        return found
+    return replace(found, low=max(0.0, found.low), high=min(1.0, found.high))
+
+
+def positive(part: str, choices: Mapping[str, str], values: Sequence[float], band: Band) -> Trial:
+    """Return the trial of the mean over seeds of a number that cannot be negative."""
+    trial = seeds_trial(part, choices, values, band)
+    return replace(trial, found=not_negative(trial.found))
+
+
+def halves(
+    items: Sequence[Item], value: Callable[[Sequence[Item]], float], limits: Band
+) -> tuple[bool | None, bool | None]:
+    """Whether the items at even and those at odd places hold by a number of theirs; None without any."""
+    one, other = (
+        limits.holds(exact(value(half), limits.unit)) if len(half) else None
+        for half in (items[0::2], items[1::2])
+    )
+    return one, other
+
+
 def share_trial(
     part: str, choices: Mapping[str, str], hits: Sequence[float], of: int, band: Band, note: str = ""
 ) -> Trial:
     """Return the trial of a share; the halves are the seeds at even and at odd places."""
-    one, other = (
-        band.holds(exact(sum(half) / (of * len(half)), "-")) if half else None
-        for half in (hits[0::2], hits[1::2])
-    )
-    return Trial(part, choices, share_interval(hits, of), band, note=note, halves=(one, other))
+    by_half = halves(hits, lambda half: sum(half) / (of * len(half)), band)
+    return Trial(part, choices, share_interval(hits, of), band, note=note, halves=by_half)

@@ -12,40 +12,23 @@ from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, short
+from ryusa.study import Finding, Trial, short
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._shares import share_interval, share_trial
 
 FIGURE = "fig19"
 TITLE = "Flow of a tilted dry bed"
 CLAIMS = ("bed18",)
-SLOPE, SETTLED, BED, COUNTS = "slope (bed18)", "settled (bed18)", "bed (bed18)", "speed that counts (bed18)"
+SLOPE, SETTLED, COUNTS = "slope (bed18)", "settled (bed18)", "speed that counts (bed18)"
 REST, MOVING = "from rest", "once moving"
 WITHOUT, WITH = "without friction", "with friction"  # its angle is that of the setting
 PUSH = "30 deg"  # slope of the first 0.15 s of a bed that is set moving
-SLOPES = ("21 deg", "23 deg", "25 deg", "28 deg")  # 18 deg is told to 3 deg in Fig. 19
 FLATTER = "19 deg"
-DESIGN = Design(
-    (
-        Factor(SLOPE, {one: {} for one in SLOPES}),
-        Factor(START, {REST: {}, MOVING: {}}),
-        Factor(SETTLED, {WITHOUT: {}, WITH: {}}),
-        Factor(BED, {"random": {}, "flat": {"build.bed": "flat"}}),
-        Factor(COUNTS, {"0.02 sqrt(g d)": {}, "0.1 sqrt(g d)": {}}),
-        friction_angle("timeline.0.friction_angle"),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-    )
-)
+DESIGN = design("bed18")
+SLOPES = DESIGN.levels[SLOPE]
 TILT = 0.3  # when the bed is tilted [s]
 LAST = 0.3  # judged over the last so many seconds, beside as many before
 FLOWS = 0.02  # of sqrt(g d), a diameter in 0.7 s
@@ -94,9 +77,7 @@ class TiltedBedRun:
         return self.speed() > limit and self.speed() > KEEPS * self.speed(LAST)
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Free choices tried, the shipped ones first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> CaseRun:
@@ -168,18 +149,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{PUSH} until 0.45 s, then {name}: at most {short(flow.most)} sqrt(g d), "
             f"{short(flow.speed())} at the end"
         )
-    return (
-        Finding(
-            "bed18",
-            tuple(trials),
-            "There are two angles: a bed at rest must first break its packing, and the denser it was laid "
-            "down the steeper it must be, while a moving bed continues to flow at a lower slope. A "
-            "collapsing heap stops near the second angle.",
-            {"bed": "200 grains, 10 layers, sizes +-20 %, dry", "k_n": "100 N/cm", "rotation": "free"},
-            also=tuple(also),
-            beside=tuple(beside),
-        ),
-    )
+    return (finding("bed18", trials, also=also, beside=beside),)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

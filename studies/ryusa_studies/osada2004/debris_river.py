@@ -11,38 +11,18 @@ from ryusa.figures.comparison import Axis, Curve, compared
 from ryusa.measure import front
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
+from ryusa.study import Finding, Trial, exact, over_seeds, seeds_trial
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "debris-river"
 TITLE = "A debris flow at the scale of a river, with deposition"
 CLAIMS = ("debris-river", "debris-river-time")
 CASE = "debris_river"
 LONG, SHORT = "0.01 s", "0.001 s"  # collision times of d = 20 cm, Eq. (8)
-DESIGN = Design(
-    (
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        Factor(
-            PACKING,
-            {
-                "bed of four diameters": {},
-                "bed of six diameters": {"build.bed": "1.2 m"},
-                "rolling coefficient 0.05": {"rolling.coefficient": "0.05"},
-            },
-        ),
-    )
-)
+DESIGN = design("debris_river")
 BREAK = 25.0  # where the slope changes [m]
 STRETCH = 27.5, 40.0  # between which the speed of the front is taken [m]
 STABLE = 0.001, 0.01  # overlaps over d that the paper calls stable [-]
@@ -89,9 +69,7 @@ class River:
         return float(self.front[-1]) - BREAK
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def paired(plan: Plan) -> list[dict[str, str]]:
@@ -187,11 +165,6 @@ def _stayed(long: River, short: River) -> float:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Whether grains come to rest, with overlaps that are stable; whether the collision time matters."""
     first = settings(plan)[0]
-    done = {
-        "grains": "20 cm within 20 %, in water",
-        "stream": "15 deg, then 3 deg from 25 m on; water 1.9 m2/s on to a saturated bed",
-    }
-
     numbers: Mapping[str, tuple[str, Callable[[River], float]]] = {
         "speed of the front from 27.5 to 40 m": ("m/s", lambda one: one.speed),
         "its way past the break": ("m", lambda one: one.way),
@@ -208,27 +181,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         )
         for time in (LONG, SHORT)
     )
-    return (
-        Finding(
-            "debris-river",
-            (
-                *_alone(found, plan, REST_PART, lambda one: one.share),
-                *_alone(found, plan, OVERLAP_PART, lambda one: one.overlap),
-            ),
-            "Grains come to rest where the slope is less than that on which the flow carries them on. The "
-            "overlap is the closing speed times the collision time over pi: 0.01 d with 0.01 s is 0.6 m/s.",
-            done,
-            also=also,
-        ),
-        Finding(
-            "debris-river-time",
-            (*_pairs(found, plan, WAY_PART, _ways), *_pairs(found, plan, STAYED_PART, _stayed)),
-            "Grains in a dense flow touch several others at once for much longer than one collision; what a "
-            "collision time changes is the part of the stress that collisions carry.",
-            done,
-            also=also,
-        ),
-    )  # fmt: skip
+    runs = [
+        *_alone(found, plan, REST_PART, lambda one: one.share),
+        *_alone(found, plan, OVERLAP_PART, lambda one: one.overlap),
+    ]
+    pairs = [*_pairs(found, plan, WAY_PART, _ways), *_pairs(found, plan, STAYED_PART, _stayed)]
+    return (finding("debris-river", runs, also=also), finding("debris-river-time", pairs, also=also))
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

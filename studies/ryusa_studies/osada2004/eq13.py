@@ -13,39 +13,21 @@ from ryusa.laws.rolling import rolling_arm_width
 from ryusa.measure import spin
 from ryusa.model.tally import LOSSES, Term
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Interval, Trial, not_negative, over_seeds, seeds_trial
+from ryusa.study import Finding, Interval, Trial, over_seeds, seeds_trial
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import START, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._shares import positive
 
 FIGURE = "fig23"
 TITLE = "Eq. (13): a moment against the torque of the shear force"
 CLAIMS = ("eq13",)
 CASE = "saltation"
-COEFFICIENT, LIMIT = "f' (eq13)", "limit of M_f (eq13)"
-PRINTED, LIMITED = "none, as printed", "at most |M_t|"
-MODELS = {PRINTED: "printed", LIMITED: "printed-limited"}
-DESIGN = Design(
-    (
-        Factor(COEFFICIENT, {one: {"rolling.coefficient": one} for one in ("1", "0.3", "3")}),
-        Factor(LIMIT, {one: {"rolling.model": model} for one, model in MODELS.items()}),
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        Factor(
-            START,
-            {"with the water": {}, "at rest": {"build.start_speed": "0 m/s", "build.start_height": "0.1 cm"}},
-        ),
-    )
-)
+LIMIT = "limit of M_f (eq13)"
+DESIGN = design("eq13")
+LIMITS = DESIGN.levels[LIMIT]
 TURNING = {"motion.rotation": "free", "build.starts": "2"}  # of eight: the spin of one scatters by 2 %
 SPIN, ENERGY = "mean spin with Eq. (13) over without", "energy taken by M_f over all losses in contacts"
 BANDS = {part: band("eq13", part) for part in (SPIN, ENERGY)}
@@ -66,9 +48,7 @@ class SpinningGrain:
     taken: float
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Coefficients and free choices, those of the case file first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def run(chosen: Mapping[str, str], seed: int) -> CaseRun:
@@ -85,12 +65,12 @@ def without(chosen: Mapping[str, str], seed: int) -> CaseRun:
 
 
 def _heap_run(limit: str, seed: int) -> CaseRun:
-    return _heap.run("free", seed, {"rolling.model": MODELS[limit], "rolling.coefficient": "1"})
+    return _heap.run("free", seed, {**DESIGN.overrides({LIMIT: limit}), "rolling.coefficient": "1"})
 
 
 def _limits(plan: Plan) -> Sequence[str]:
     """Forms that a heap is made with; it judges nothing."""
-    return plan.pick((), tuple(MODELS))
+    return plan.pick((), LIMITS)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -126,8 +106,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             continue
         plain = [found[without(chosen, seed)].spin for seed in plan.seeds]
         ratios = [one.spin / other for one, other in zip(group, plain, strict=True)]
-        trial = seeds_trial(SPIN, chosen, ratios, BANDS[SPIN])
-        trials.append(Trial(SPIN, chosen, not_negative(trial.found), BANDS[SPIN], halves=trial.halves))
+        trials.append(positive(SPIN, chosen, ratios, BANDS[SPIN]))
         trials.append(seeds_trial(ENERGY, chosen, [one.taken for one in group], BANDS[ENERGY]))
     beside: list[Trial] = []
     for limit in _limits(plan):
@@ -138,19 +117,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         key = {LIMIT: limit}
         beside.append(Trial("slope of the heap of Fig. 19, f' = 1", key, slope, None, note=_broken(group)))
         beside.append(Trial("energy taken by M_f over the height lost by the heap", key, lost, None))
-    return [
-        Finding(
-            "eq13",
-            tuple(trials),
-            "In Eq. (13) M_f opposes M_t, the torque of the shear force, not the spin. On a rolling grain "
-            "M_f itself causes the shear force of the next M_t: it brakes and drives alternately, and can "
-            "create energy. Limited to |M_t| it weakens the torque that would stop a grain as much as the "
-            "one that would turn it.",
-            {"rotation": "free", "k_n": "100 N/cm"},
-            also=_arms(),
-            beside=tuple(beside),
-        )
-    ]
+    return [finding("eq13", trials, also=_arms(), beside=beside)]
 
 
 def _broken(group: Sequence[Any]) -> str:

@@ -9,11 +9,12 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.laws.collision import collision_time
-from ryusa.study import Band, Design, Finding, Interval, Trial, over_range
+from ryusa.study import Band, Finding, Interval, Trial, over_range
 from ryusa_studies.osada2004 import _drops
-from ryusa_studies.osada2004._drops import AT_STEPS, EXACT, DropRun, Setup
-from ryusa_studies.osada2004._factors import n_settings
-from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa_studies.osada2004._drops import DropRun, Setup
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
 FIGURE = "fig4"
@@ -24,15 +25,7 @@ NONE = "none, as in Eq. (8)"
 SOFT = 0.01  # the paper's spring [N/cm]
 FIRM = 100.0  # of the ratios of diameters [N/cm]
 SPRINGS = (0.01, 1.0, 100.0)  # of the ratios of springs [N/cm]
-SLOW = "0.01 m/s"  # keeps overlaps small; without weight the contact time does not depend on it
-DESIGN = Design(
-    (
-        _drops.choice(DENSITY, _drops.DENSITY, "2500 kg/m3", "2800 kg/m3"),
-        _drops.choice(WEIGHT, NONE, "yes"),
-        _drops.choice(SPEED, SLOW, "0.1 m/s", "0.3 m/s"),
-        _drops.choice(TIMING, EXACT, AT_STEPS),
-    )
-)
+DESIGN = design("fig04")
 QUOTED = _drops.near(0.01, "s", "about 0.01 s")
 SHORTER = Band(0.0, 1.0, "-", "shorter: the ratio is below 1")
 STAYS = "stays on its partner: weight against a soft spring"
@@ -65,16 +58,11 @@ def compared(chosen: Mapping[str, str]) -> tuple[list[Setup], list[Setup]]:
 def setups(plan: Plan) -> list[Setup]:
     """The chart, and what each setting compares."""
     chart = [lossless(d, k_n) for d in _drops.SIZES for k_n in stiffnesses(plan)]
-    sets = [compared(chosen) for chosen in DESIGN.settings(n_settings(plan))]
+    sets = [compared(chosen) for chosen in DESIGN.sets(plan)]
     return list(dict.fromkeys([*chart, *(one for sizes, springs in sets for one in (*sizes, *springs))]))
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup; there is no chance in them, so that every seed would give the same."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def times(found: Found, plan: Plan) -> np.ndarray:
@@ -87,7 +75,7 @@ def times(found: Found, plan: Plan) -> np.ndarray:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """About 0.01 s for the soft spring; shorter for small and for stiff."""
     trials: list[Trial] = []
-    for chosen in DESIGN.settings(n_settings(plan)):
+    for chosen in DESIGN.sets(plan):
         sizes, springs = ([found[one.task] for one in each] for each in compared(chosen))
         soft: DropRun = springs[0]
         quoted = "contact time, d = 0.2 cm, k_n = 0.01 N/cm"
@@ -99,18 +87,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     grid = times(found, plan)
     law = np.array([[drop.eq_8 for drop in row] for row in _grid(found, plan)])
     also = [f"runs over Eq. (8): {np.min(grid / law):.4f} to {np.max(grid / law):.4f}"]
-    return (
-        Finding(
-            "fig4",
-            tuple(trials),
-            "For a mass on a spring the contact time is proportional to the square root of mass over "
-            "stiffness, and so to d^(3/2). The quoted 0.01 s follows for quartz. It is a value of the "
-            "formula rather than of a real contact: on so soft a spring the overlap is large, and the "
-            "weight of the grain lengthens the contact.",
-            {"restitution": "1", "weight": "none, as in Eq. (8)", "steps per contact": "10"},
-            also=tuple(also),
-        ),
-    )
+    return (finding("fig4", trials, also=also),)
 
 
 def _grid(found: Found, plan: Plan) -> list[list[DropRun]]:
@@ -131,11 +108,6 @@ def _trial(
     if all(one.parts for one in drops):
         return Trial(part, chosen, value, band)
     return Trial(part, chosen, value, band, False, STAYS)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -8,21 +8,19 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.laws.collision import collision_time, contact_time_no_tension, contact_time_tension
-from ryusa.study import Band, Design, Finding, Trial, over_range
+from ryusa.study import Band, Finding, Trial, over_range
 from ryusa_studies.osada2004 import _drops
-from ryusa_studies.osada2004._drops import AT_STEPS, EXACT, NO_TENSION, TENSION, DropRun, Setup
-from ryusa_studies.osada2004._factors import PARTING_RULE, n_settings
-from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa_studies.osada2004._drops import EXACT, NO_TENSION, TENSION, DropRun, Setup
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import drop_chart
 
 FIGURE = "fig5"
 TITLE = "Contact time with e = 0.7 beside Eq. (8)"
 CLAIMS = ("fig5",)
 SPEED, TIMING = "impact speed (fig5)", "timing (fig5)"
-SPEEDS = ("0.01 m/s", "0.02 m/s", "0.03 m/s", "0.05 m/s", "0.1 m/s", "0.5 m/s", "1 m/s")
-DESIGN = Design(
-    (_drops.choice(SPEED, _drops.SPEED, *SPEEDS), PARTING_RULE, _drops.choice(TIMING, EXACT, AT_STEPS))
-)
+DESIGN = design("fig05")
 HARDLY = Band(0.9, 1.1, "-", f"hardly differs: 0.9 to 1.1 of Eq. (8), {_drops.ABOUT}")
 STAYS = "stays on its partner: weight against a soft spring"
 
@@ -32,9 +30,7 @@ def stiffnesses(plan: Plan) -> tuple[float, ...]:
     return plan.pick((0.1, 10.0, 1000.0), (0.1, 1.0, 10.0, 100.0, 1000.0))
 
 
-def choices(plan: Plan) -> list[dict[str, str]]:
-    """Settings, the one as shipped first."""
-    return DESIGN.settings(n_settings(plan))
+choices = DESIGN.sets
 
 
 def setup(chosen: Mapping[str, str], k_n: float) -> Setup:
@@ -47,12 +43,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [setup(chosen, k_n) for chosen in choices(plan) for k_n in stiffnesses(plan)]
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def ratio(drop: DropRun) -> float:
@@ -83,19 +74,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     most = max((h for k, (h, _) in enumerate(light) if all(good for _, good in light[: k + 1])), default=0.0)
     least = min(slack, key=lambda one: one[1])
     return (
-        Finding(
+        finding(
             "fig5",
-            tuple(trials),
-            f"The dashpot changes the contact time little: without weight to {no_pull:.3f} of Eq. (8) if "
-            f"it may not pull, to {pull:.4f} if it may. Weight has a larger effect: as g/(v omega_0) "
-            "approaches 1, with soft springs and slow impacts, contacts become longer, and in the end the "
-            "grain does not rebound.",
-            {"restitution": "0.7", "d": _drops.DIAMETER, "weight": "yes"},
+            trials,
             also=(
                 f"weight reduces the restitution too: e = {least[1]:.2f} instead of 0.7 at g/(v omega_0) = "
                 f"{least[0]:.2f}",
                 f"within 10 % in every run with g/(v omega_0) up to {most:.2g}",
             ),
+            no_pull=no_pull,
+            pull=pull,
         ),
     )
 
@@ -103,11 +91,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 def _named(speed: str, values: np.ndarray) -> str:
     """Label of a series; says where points are missing."""
     return f"run, {speed}" + ("; on the softest it stays" if np.isnan(values).any() else "")
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -11,12 +11,11 @@ from ryusa.measure import Tracks, turned_time
 from ryusa.results import Results
 from ryusa.study import Finding, short
 from ryusa_studies.osada2004 import _saltation
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa_studies.osada2004._saltation import (
-    HOPS,
     K_N,
     LOCKED,
-    MANY,
     SHIPPED,
     SKIM,
     SOFT,
@@ -84,15 +83,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "mean jump height": ("jump_height", "m"),
     }
     return (
-        Finding(
+        finding(
             "fig7",
-            tuple(trials),
-            f"Two effects that Eq. (8) omits nearly cancel: added mass makes a contact "
-            f"{100 * (times.added / times.eq_8 - 1):.0f} % longer, and with the dashpot the force ends "
-            f"{100 * (1 - times.damped / times.added):.0f} % earlier. What remains is that the line of "
-            "centres turns while the grain passes over its partner. This shortens long contacts, so the "
-            f"stiffness decides{below}.",
-            settings={"rotation": LOCKED, "starts": f"{MANY['build.starts']} of {HOPS} hops a seed"},
+            trials,
             also=(
                 *(
                     f"as shipped, {words}: "
@@ -104,6 +97,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "as shipped, mean largest overlap/d: "
                 + listed({k: short(_average([one.overlap for one in here])) for k, here in sweep.items()}),
             ),
+            longer=100 * (times.added / times.eq_8 - 1),
+            shorter=100 * (1 - times.damped / times.added),
+            below=below,
         ),
     )
 

@@ -12,11 +12,12 @@ from ryusa.measure import collisions
 from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Band, Design, Finding, Trial, over_range, over_seeds
+from ryusa.study import Band, Finding, Trial, over_range, over_seeds
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, _saltation
-from ryusa_studies.osada2004._drops import AT_STEPS, EXACT, DropRun, Setup
-from ryusa_studies.osada2004._factors import PARTING_RULE, n_settings
+from ryusa_studies.osada2004._drops import DropRun, Setup
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart, over_speed
 
@@ -24,15 +25,7 @@ FIGURE = "fig8"
 TITLE = "Largest overlap against stiffness"
 CLAIMS = ("fig8", "fig8-through")
 SPEED, E, TIMING = "impact speed (fig8)", "restitution (fig8)", "timing (fig8)"
-FASTER = ("0.1 m/s", "0.2 m/s", "0.5 m/s", "0.6 m/s", "0.7 m/s", "0.8 m/s", "1 m/s", "2 m/s")
-DESIGN = Design(
-    (
-        _drops.choice(SPEED, _drops.SPEED, *FASTER),
-        _drops.choice(E, "0.7", "1"),
-        PARTING_RULE,
-        _drops.choice(TIMING, EXACT, AT_STEPS),
-    )
-)
+DESIGN = design("fig08")
 K_N = 100.0  # the paper's spring [N/cm]
 MEAN, HARDEST = "of a saltating grain, mean", "of a saltating grain, hardest"
 QUOTED = _drops.near(0.01, "-", "0.01 at about 100 N/cm")
@@ -63,9 +56,7 @@ def chart(plan: Plan) -> list[Setup]:
     return [Setup(d=d, k_n=k_n) for d in _drops.SIZES for k_n in stiffnesses(plan)]
 
 
-def choices(plan: Plan) -> list[dict[str, str]]:
-    """Settings, the one as shipped first."""
-    return DESIGN.settings(n_settings(plan))
+choices = DESIGN.sets
 
 
 def setup(chosen: Mapping[str, str], k_n: float = K_N) -> Setup:
@@ -79,6 +70,9 @@ def setups(plan: Plan) -> list[Setup]:
     """Every drop."""
     ladders = [setup(chosen, k_n) for chosen in choices(plan) for k_n in LADDER]
     return list(dict.fromkeys([*ladders, *chart(plan)]))
+
+
+rows = _drops.rows_of(setups)
 
 
 def saltating(plan: Plan) -> list[CaseRun]:
@@ -114,20 +108,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     wanted = quantity(_drops.SPEED, "m/s") * 0.01 / base
     speed = np.concatenate([one.speed for one in hits])
     return (
-        Finding(
+        finding(
             "fig8",
-            tuple(trials),
-            "The overlap is proportional to impact speed and to the square root of mass over stiffness. "
-            f"At 100 N/cm it is {base:.4f} for {_drops.SPEED}, so 0.01 requires {wanted:.2f} m/s, a fall "
-            f"of {100.0 * wanted**2 / 19.6:.1f} cm in air; a saltating grain hits the bed with "
-            f"{speed.mean():.2f} m/s along the normal on average and {speed.max():.2f} m/s at most.",
-            {"d": _drops.DIAMETER, "k_n": "100 N/cm"},
+            trials,
             also=(
                 f"at {_drops.SPEED} an overlap of 0.01 d requires {K_N * (base / 0.01) ** 2:.0f} N/cm",
                 f"{100.0 * np.mean(speed >= wanted):.0f} % of the {len(speed)} hits of the saltating grain "
                 f"are at {wanted:.2f} m/s or more",
             ),
-            beside=tuple(beside),
+            beside=beside,
+            base=base,
+            wanted=wanted,
+            height=100.0 * wanted**2 / 19.6,
+            mean=speed.mean(),
+            largest=speed.max(),
         ),
         _through(found, plan),
     )
@@ -142,14 +136,7 @@ def _through(found: Found, plan: Plan) -> Finding:
         deep = over_range(list(weak.overlap), "-", f"{len(weak.overlap)} phases of first touch")
         trials.append(Trial("largest overlap/d, d = 0.2 cm, k_n = 0.01 N/cm", chosen, deep, GREATLY))
         trials.append(_limit(chosen, [one.passed > 0 for one in ladder]))
-    return Finding(
-        "fig8-through",
-        tuple(trials),
-        "A grain passes where the spring cannot stop it within a diameter. The overlap grows with impact "
-        "speed over the root of the stiffness, so the limit goes with the square of the speed; on the "
-        "softest springs its weight adds to it.",
-        {"d": _drops.DIAMETER, "partner": "fixed, hit head-on"},
-    )
+    return finding("fig8-through", trials)
 
 
 def _limit(chosen: Mapping[str, str], passes: Sequence[bool]) -> Trial:
@@ -161,11 +148,6 @@ def _limit(chosen: Mapping[str, str], passes: Sequence[bool]) -> Trial:
         return Trial(part, chosen, none, WEAK_ONES, False, f"passes on none, down to {LADDER[0]:g} N/cm")
     ends = LADDER[last : last + 2]
     return Trial(part, chosen, over_range(list(ends), "N/cm", "a spring and the next stiffer"), WEAK_ONES)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -16,18 +16,12 @@ from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, vibrating_sh
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Interval, Trial, not_negative, seeds_trial, short
+from ryusa.study import Finding, Interval, Trial, short
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    FULL,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import ROTATION, CaseRun, Found, Plan, paper_run
-from ryusa_studies.osada2004._shares import share_interval, share_trial
+from ryusa_studies.osada2004._factors import FULL, design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._shares import positive, share_interval, share_trial
 from ryusa_studies.osada2004.figures.vibration_threshold import over_threshold
 from ryusa_studies.osada2004.forward_euler import integrate, step
 
@@ -51,29 +45,9 @@ EULER = "forward differences, spring from overlap, 10 steps"
 ONE_STEP = "forward differences, spring from overlap, one step for both (10 and 100 steps)"
 FORWARD = (SUMMED, EULER, ONE_STEP)
 STEPS = 10.0  # the paper's own limit
-# the paper does not say whether grains turn in this box; its other dense runs are locked
-TURNING = Factor(ROTATION, {"locked": {}, "free": {"motion.rotation": "free"}})
-READ = (Factor(THRESHOLD, {one: {} for one in THRESHOLDS}), Factor(MOVED, {one: {} for one in WAYS}))
-COMMON = (friction_angle(), SLIP_RULE, PARTING_RULE, STIFFNESS_RATIO, TURNING)
-DESIGN = Design(
-    (
-        *COMMON,
-        Factor(HEIGHT, {"1 cm": {}, "0 cm": {"build.height": "0 cm"}, "2 cm": {"build.height": "2 cm"}}),
-        Factor(SCHEME, {one: {} for one in (OURS, *FORWARD)}),
-        *READ,
-    )
-)
-SIZES = ("0.05 cm", "0.1 cm", "0.5 cm", "1 cm")
-BELOW, ABOVE = ("0.005", "0.002"), ("0.03", "0.1")  # overlap/d asked for
-OTHERS = Design(
-    (
-        *COMMON,
-        Factor(SIZE, {one: {} for one in SIZES}),
-        Factor(OVERLAP, {one: {} for one in BELOW}),
-        Factor(SCHEME, {one: {} for one in (OURS, SUMMED, EULER)}),
-        *READ,
-    )
-)
+DESIGN = design("fig10")
+ABOVE = ("0.03", "0.1")  # overlap/d asked for
+OTHERS = design("fig10-others")
 AT, D = 0.125, 0.002  # when the paper looks at the stiff grains [s]; its diameter [m]
 MARKED = (20, 39)  # one amid the pile, one in its top layer; the text does not say where No. 1 and No. 2 lay
 GRAINS = 42
@@ -103,18 +77,14 @@ class Fall:
         return self.moved if scheme == OURS else self.forward[scheme]
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """What the text leaves open about the box, the shipped ones first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], k_n: str, seed: int) -> CaseRun:
     return paper_run("fig10", DESIGN.overrides(chosen) | ({} if k_n == SOFT else {STIFFNESS: k_n}), seed)
 
 
-def other_settings(plan: Plan) -> list[dict[str, str]]:
-    """What the text leaves open about boxes of other grains."""
-    return OTHERS.settings(n_settings(plan))
+other_settings = OTHERS.sets
 
 
 def _other(chosen: Mapping[str, str], seed: int) -> CaseRun:
@@ -213,8 +183,7 @@ def _both(plan: Plan, found: Found) -> tuple[list[Trial], list[Trial]]:
         runs, stiffs = ([found[_run(one, k, seed)] for seed in plan.seeds] for k in (SOFT, STIFF))
         soft.append(share_trial(SOFT_PART, one, _vibrating(runs, one), GRAINS, HALF))
         late = [rests(run.by(one[SCHEME]), one[THRESHOLD], one[MOVED]) for run in stiffs]
-        trial = seeds_trial(STIFF_PART, one, late, REST)
-        stiff.append(Trial(trial.part, one, not_negative(trial.found), REST, halves=trial.halves))
+        stiff.append(positive(STIFF_PART, one, late, REST))
     return soft, stiff
 
 
@@ -237,19 +206,15 @@ def _rule(plan: Plan, found: Found) -> Finding:
             key = {OVERLAP: one[OVERLAP], THRESHOLD: threshold, MOVED: "to and fro"}
             hits = _vibrating(runs, one | key)
             beside.append(Trial(RULE_PART, key, share_interval(hits, GRAINS), None))
-    return Finding(
+    return finding(
         "fig10-rule",
-        tuple(trials),
-        "Dry boxes with equal overlap/d are similar at all diameters, with times in units of sqrt(d/g), "
-        "so the rule holds for all diameters or for none. There is no threshold at 0.01: the lower "
-        "overlap/d, the smaller and the shorter the motion left by the fall.",
-        {"window and run": "0.01 s and 0.5 s at 0.2 cm, in proportion to sqrt(d/g)"},
+        trials,
         also=(
             "overlap/d reached: "
             + short(max(found[_other(one, s)].overlap for one in other_settings(plan) for s in plan.seeds))
             + " at most",
         ),
-        beside=tuple(beside),
+        beside=beside,
     )
 
 
@@ -264,7 +229,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     soft, stiff = _both(plan, found)
     runs: list[Fall] = [found[_run(DESIGN.base, SOFT, seed)] for seed in plan.seeds]
     stiffs: list[Fall] = [found[_run(DESIGN.base, STIFF, seed)] for seed in plan.seeds]
-    shared = {"d": "0.2 cm", "grains": "42, all alike", "window": "0.01 s"}
     overlap = [float(np.median([one.overlap for one in some])) for some in (runs, stiffs)]
     net = float(np.median([np.abs(one.moved.net[-1]) / one.moved.d_mean for one in runs]))
     also = [
@@ -283,27 +247,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{short(_left(runs, 0.5, name))} d and {short(_left(stiffs, 0.5, name))} d"
         )
     return (
-        Finding(
+        finding(
             "fig10-soft",
-            tuple(soft),
-            "The motion left by the fall is damped by the dashpots at a rate proportional to sqrt(k_n), "
-            "ten times more slowly in the soft box: the median grain oscillates by "
-            f"{short(_left(runs, 0.3))} d at 0.3 s and {short(_left(runs, 0.5))} d at 0.5 s. It is not "
-            "sustained, so the threshold decides. Forward differences sustain it if the spring force is "
-            f"calculated from the overlap and a contact has ten steps ({short(_left(runs, 0.5, EULER))} d "
-            f"at 0.5 s, but then the stiff box vibrates too, {short(_left(stiffs, 0.5, EULER))} d); with "
-            "the spring force summed as printed they do not.",
-            {**shared, "k_n": SOFT},
-            also=tuple(also),
+            soft,
+            also=also,
+            left_3=short(_left(runs, 0.3)),
+            left_5=short(_left(runs, 0.5)),
+            euler=short(_left(runs, 0.5, EULER)),
+            stiff=short(_left(stiffs, 0.5, EULER)),
         ),
-        Finding(
-            "fig10-stiff",
-            tuple(stiff),
-            "A stiff pile loses its oscillation within hundredths of a second. How long grains go on "
-            "moving depends on the height of the fall and, with rotation free, on rolling, which is "
-            "hardly resisted.",
-            {**shared, "k_n": STIFF},
-        ),
+        finding("fig10-stiff", stiff),
         _rule(plan, found),
     )
 

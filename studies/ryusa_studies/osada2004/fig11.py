@@ -12,7 +12,8 @@ from ryusa.study import Band, Finding, Trial
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, fig08
 from ryusa_studies.osada2004._drops import DropRun, Setup
-from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
 FIGURE = "fig11"
@@ -34,12 +35,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(time=TIME, speed=speed) for speed in speeds(plan)] + fig08.chart(plan)
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -53,25 +49,19 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     edges = [quantity(TIME, "s") * level / base for level in BAND]
     at_fig8 = 0.01 * np.sqrt(Setup(k_n=fig08.K_N).stiffness / Setup(time=TIME).stiffness)
     return (
-        Finding(
+        finding(
             "fig11",
-            tuple(trials),
-            "Overlap/d is proportional to impact speed times contact time over d, so at a given speed "
-            f"the band spans the same factor of {BAND[1] / BAND[0]:g} in contact time. For 0.2 cm and "
-            f"{_drops.SPEED} these are {edges[0]:.2g} to {edges[1]:.2g} s; {TIME} lies in it for impacts at "
-            f"{v * BAND[0] / base:.2g} to {v * BAND[1] / base:.2g} m/s.",
-            {"restitution": "0.7", "d": _drops.DIAMETER, "parting": _drops.NO_TENSION},
+            trials,
             also=(
                 f"at the speed that fig8 requires, with overlap/d 0.01 at 100 N/cm, it is {at_fig8:.4f}, "
                 f"{'inside' if BAND[0] < at_fig8 < BAND[1] else 'outside'} the band",
             ),
+            first=edges[0],
+            last=edges[1],
+            least=v * BAND[0] / base,
+            most=v * BAND[1] / base,
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Found) -> figures.StiffnessBand:

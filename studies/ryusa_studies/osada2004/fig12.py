@@ -10,7 +10,8 @@ from ryusa.study import Finding, Trial, over_range
 from ryusa.units import quantity
 from ryusa_studies.osada2004 import _drops, fig11
 from ryusa_studies.osada2004._drops import DropRun, Setup
-from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import Found, Plan
 from ryusa_studies.osada2004.figures import QuotedPoint, drop_chart
 
 FIGURE = "fig12"
@@ -40,12 +41,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [one for one in pairs if one.deepest < 0.9] + chart
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -76,28 +72,19 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for time in TIMES
     ]
     spread = f"{min(ratios):.3g}" if len(ratios) == 1 else f"{min(ratios):.3g} to {max(ratios):.3g}"
+    impossible = (
+        "By Eq. (8), overlap/d is proportional to the contact time: the two times differ by a factor "
+        f"of {asked:.0f}, and so do the overlaps (runs, with weight: {spread}), so a band that "
+        f"spans a factor of {width:g} cannot contain both"
+    )
     return (
-        Finding(
+        finding(
             "fig12",
-            tuple(trials),
-            "At one impact speed the largest overlap is proportional to the contact time. Each contact "
-            "time lies in the band by itself, but at impact speeds that differ by a factor of 100: "
-            f"{' and '.join(alone)}.",
-            {"restitution": "0.7", "d": D, "parting": _drops.NO_TENSION},
-            contradiction=(
-                "By Eq. (8), overlap/d is proportional to the contact time: the two times differ by a factor "
-                f"of {asked:.0f}, and so do the overlaps (runs, with weight: {spread}), so a band that "
-                f"spans a factor of {width:g} cannot contain both"
-                if min(ratios) > width
-                else ""
-            ),
+            trials,
+            contradiction=impossible if min(ratios) > width else "",
+            alone=" and ".join(alone),
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

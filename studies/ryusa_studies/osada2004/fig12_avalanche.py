@@ -10,7 +10,9 @@ from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _avalanche
 from ryusa_studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOW, RunPair
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
+from ryusa_studies.osada2004._shares import within_0_1
 
 FIGURE = "fig12"
 TITLE = "Contacts of large grains in the stable band, in an avalanche"
@@ -24,7 +26,7 @@ SHOWN: Mapping[str, Callable[[RunPair], float]] = {
     f"all contacts in the band, {STIFF}": lambda pair: pair.stiff.in_band,
 }
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -36,35 +38,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         runs = _avalanche.pairs(found, plan, chosen, window)
         for part, value in PARTS.items():
             one = seeds_trial(part, choices, [value(pair) for pair in runs], band("fig12-avalanche", part))
-            judged.append(_share(one))
+            judged.append(replace(one, found=within_0_1(one.found)))
         for part, value in SHOWN.items():
-            shown = over_seeds([value(pair) for pair in runs], "-")
-            beside.append(_share(Trial(part, choices, shown, None)))
+            shown = within_0_1(over_seeds([value(pair) for pair in runs], "-"))
+            beside.append(Trial(part, choices, shown, None))
     base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
     speed = short(sum(pair.soft.speed for pair in base) / len(base))
-    return (
-        Finding(
-            "fig12-avalanche",
-            tuple(judged),
-            "The largest overlap of an impact is proportional to its speed times the collision time; and in "
-            "a dense flow a contact of 0.01 s also carries the weight of the grains above. As shipped the "
-            f"grains flow at {speed} m/s.",
-            _avalanche.SETTLED,
-            beside=tuple(beside),
-            readings=(WINDOW,),
-        ),
-    )
-
-
-def _share(one: Trial) -> Trial:
-    """Let the interval of a share end at 0 and 1."""
-    low, high = max(one.found.low, 0.0), min(one.found.high, 1.0)
-    return replace(one, found=replace(one.found, low=low, high=high)) if one.found.value >= 0.0 else one
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
+    return (finding("fig12-avalanche", judged, beside=beside, speed=speed),)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

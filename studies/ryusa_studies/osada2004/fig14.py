@@ -11,6 +11,7 @@ from ryusa.study import Finding, short
 from ryusa_studies.osada2004 import _avalanche
 from ryusa_studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, RunPair, together, unlike
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
 
 FIGURE = "fig14"
@@ -19,7 +20,7 @@ CLAIMS = ("fig14",)
 PART = "difference of the two profiles of concentration, means over seeds, over their mean"
 ALIKE = band("fig14", PART)
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -29,16 +30,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     depth = [float(np.mean([(p.soft if k == 0 else p.stiff).profile.top() for p in base])) for k in range(2)]
     volume = float(np.mean([p.soft.profile.volume.mean() for p in base]))
     return (
-        Finding(
+        finding(
             "fig14",
             (*alike, *_avalanche.flows(found, plan)),
-            f"With equal grains on equal beds only the dilation can differ. {short(100 * volume)} cm of "
-            f"solid volume occupy {short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm "
-            f"({STIFF}) as shipped. If one of the two does not flow, it keeps the packing in which it "
-            "settled, and the profiles differ.",
-            _avalanche.SETTLED,
             also=_scatter(base),
-            readings=(_avalanche.WINDOW,),
+            volume=short(100 * volume),
+            least=short(100 * depth[0]),
+            most=short(100 * depth[1]),
         ),
     )
 
@@ -53,11 +51,6 @@ def _scatter(base: Sequence[RunPair]) -> tuple[str, ...]:
         for time, runs in halves.items()
     ]
     return (f"single runs that differ only in the seed differ by {', '.join(lines)}",)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

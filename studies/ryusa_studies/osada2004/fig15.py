@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -28,7 +29,9 @@ from ryusa_studies.osada2004._avalanche import (
     unlike,
 )  # fmt: skip
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, ROTATION, SLIP, Found, Plan
+from ryusa_studies.osada2004._shares import halves
 from ryusa_studies.osada2004.fig14 import ALIKE
 from ryusa_studies.osada2004.fig14 import PART as ALIKE_PART
 from ryusa_studies.osada2004.figures import SensitivityRow, sensitivity
@@ -45,7 +48,7 @@ MORE = band("fig15-flux", FLUX)
 LOCKED = {**SHIPPED, ROTATION: "locked", PHI: "20 deg"}
 CAPS = ("spring", "total")
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def depth_mean(found: Sequence[RunPair]) -> float:
@@ -72,13 +75,10 @@ def least(part: str, chosen: Mapping[str, str], found: Sequence[RunPair], limits
         high=min(one.high for one in jointly),
         how=f"least of {len(alone)} layers, each {worst.how}; upper limit after Bonferroni",
     )
-    one, other = (
-        limits.holds(exact(min(float(np.mean(x[half::2])) for x in by_layer), limits.unit))
-        if len(found) > half
-        else None
-        for half in (0, 1)
+    by_half = halves(
+        range(len(found)), lambda half: min(float(np.mean([x[k] for k in half])) for x in by_layer), limits
     )
-    return Trial(part, chosen, both, limits, halves=(one, other))
+    return Trial(part, chosen, both, limits, halves=by_half)
 
 
 soft_speed = each(lambda pair: pair.soft.speed)  # of all grains, with long contacts [m/s]
@@ -120,28 +120,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             [(one.soft.touching, one.stiff.touching) for one in base],
         )
     )
-    why = (
-        "The collision time matters for two reasons. In Eq. (3) a sliding contact keeps its dashpot, "
-        "which is proportional to the square root of k_n and has no cap: in enduring contacts it acts "
-        f"like viscosity, and locked grains creep at {slow} m/s with {STIFF} (closed form; {fast} m/s with "
-        f"{SOFT} is not a limit). And long contacts overlap in time: {rate} contacts a second, {touching} "
-        "partners at a time, so that a contact has not ended when the next begins."
-    )
     tops = [one for one in tried_sets if one[SLIP] != "spring"]
     left = "; ".join(f"{_avalanche.label(one)}: {text(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
+    words: dict[str, Any] = {"slow": slow, "fast": fast, "rate": rate, "touching": touching}
     return (
-        Finding(
+        finding(
             "fig15",
-            (
-                *tried(DEPTH_MEAN, together(depth_mean), ABOUT),
-                *tried(LEAST, least, WHOLE),
-                *flow,
-            ),
-            f"{why} The flow does not become steady, so the difference depends on the time window: "
-            f"{text(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
-            _avalanche.SETTLED,
-            readings=(_avalanche.WINDOW,),
+            [*tried(DEPTH_MEAN, together(depth_mean), ABOUT), *tried(LEAST, least, WHOLE), *flow],
             also=(
                 *(
                     f"speed, {_avalanche.label(one)}: {text(soft_speed, one)} m/s with {SOFT}, "
@@ -150,29 +136,22 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
             ),
+            shipped=text(depth_mean, SHIPPED),
+            windows=windows,
+            **words,
         ),
-        Finding(
+        finding(
             "fig15-flux",
-            (
-                *tried(FLUX, apart(flux_of), MORE),
-                *tried(ALIKE_PART, together(unlike), ALIKE),
-                *flow,
-            ),
-            "Flux is concentration times speed: with like profiles of concentration it differs as the "
-            f"speed does, by a factor of {text(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
-            _avalanche.SETTLED,
-            readings=(_avalanche.WINDOW,),
-            also=tuple(
+            [*tried(FLUX, apart(flux_of), MORE), *tried(ALIKE_PART, together(unlike), ALIKE), *flow],
+            also=[
                 f"flux ratio, {_avalanche.label(one)}: {text(flux_ratio, one)} at {windows}"
                 for one in tried_sets
-            ),
+            ],
+            shipped=text(flux_ratio, SHIPPED),
+            windows=windows,
+            **words,
         ),
     )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

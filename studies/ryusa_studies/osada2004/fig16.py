@@ -23,6 +23,7 @@ from ryusa_studies.osada2004._avalanche import (
     together,
 )
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import Found, Plan
 
 FIGURE = "fig16"
@@ -39,7 +40,7 @@ PARTS = {
 }
 NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
 
-tasks, measure = _avalanche.tasks, _avalanche.measure
+tasks, measure, rows = _avalanche.tasks, _avalanche.measure, _avalanche.rows
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -82,14 +83,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         if all(pair.flows for pair in _avalanche.pairs(found, plan, one, window))
     )
     return (
-        Finding(
+        finding(
             "fig16",
-            tuple(tried),
-            "A grain near the bed rises and falls once over every bed grain that it passes, whatever the "
-            "collision time: that sets how often its path reverses on a given way. "
-            f"{SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
-            {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
-            readings=(_avalanche.WINDOW, GRAINS, RUNS),
+            tried,
             also=(
                 "grains that touch the bed and moving grains alternately, wherever they began: "
                 f"{words['n', BETWEEN]}",
@@ -98,6 +94,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 f"vertical turns a second counted from {_avalanche.FINE:g} d, grains between bed and movers: "
                 f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
             ),
+            between=said(BETWEEN),
         ),
     )
 
@@ -142,11 +139,6 @@ def _mean(values: Sequence[float]) -> float:
 def _without(one: Trial) -> Trial:
     """Let a trial without a number fail: there are no such ways to compare."""
     return one if math.isfinite(one.found.value) else replace(one, decided=False, note=NONE)
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run and window."""
-    return _avalanche.rows(found, plan)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

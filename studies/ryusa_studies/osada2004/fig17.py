@@ -9,8 +9,9 @@ from ryusa import figures
 from ryusa.study import Finding, Trial, seeds_trial, short
 from ryusa_studies.osada2004 import _debris, _debris_run
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._debris import AMOUNT, SETTLED, SHIPPED
+from ryusa_studies.osada2004._debris import AMOUNT, SHIPPED
 from ryusa_studies.osada2004._debris_run import NEAR_SURFACE, PARTNERS, Debris
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
 
 FIGURE = "fig17"
@@ -64,14 +65,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for one in _amounts(plan)
     )
     return (
-        Finding(
+        finding(
             "fig17",
-            tuple(tried),
-            "The number of grains and the layer that is called near the surface decide the concentration. "
-            "Contacts of less than 0.1 ms throw every grain up and down, at "
-            f"{text('rms_z', 100.0)} cm/s on average, {text('steep')} of its speed along the bed.",
-            SETTLED,
-            readings=(LAYER,),
+            tried,
             also=(
                 f"effect of the number of grains, all else as shipped: {amounts}",
                 f"as shipped: mean speed of the grains {text('speed')} m/s ({text('near_bed')} m/s near the "
@@ -80,6 +76,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "the experiment's nearly parallel layers are no number of ours; the band asks whether the "
                 "simulated ways are not parallel",
             ),
+            rms_z=text("rms_z", 100.0),
+            steep=text("steep"),
         ),
         *(_of_contacts(found, plan, claim) for claim in OF_CONTACTS),
     )
@@ -121,18 +119,14 @@ def _of_contacts(found: Found, plan: Plan, claim: str) -> Finding:
     alone = ", ".join(
         f"{pair} {short(float(np.mean([one.contacts[pair].alone for one in runs])))} s" for pair in PARTNERS
     )
-    return Finding(
+    return finding(
         claim,
-        tuple(tried),
-        "One spring and one dashpot cannot give the same contact time and restitution for all pairs: the "
-        "effective mass is that of the grain on a fixed partner, and half of it between two free grains. "
-        f"Closed forms as shipped, with added mass: {closed}.",
-        SETTLED,
-        readings=(PAIR,),
+        tried,
         also=(
             f"contacts in a run as shipped: {counts}",
             f"mean contact time of contacts with a single partner, as shipped: {alone}",
         ),
+        closed=closed,
     )
 
 

@@ -13,14 +13,15 @@ from ryusa.laws.debris import equilibrium_concentration
 from ryusa.measure import collisions, profiles
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial, short
+from ryusa.study import Finding, Trial, exact, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _debris
 from ryusa_studies.osada2004._bands import band
 from ryusa_studies.osada2004._debris_run import LAYER, concentration, inside
 from ryusa_studies.osada2004._egashira import DebrisFlow
-from ryusa_studies.osada2004._factors import DRAG_LAW, PARTING_RULE, SLIP_RULE, friction_angle, n_settings
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parallel import STRETCHES, Parallel, parallel
-from ryusa_studies.osada2004._parts import CLOSURE, PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow against Egashira's closed forms, and how parallel its paths are"
@@ -50,19 +51,7 @@ def _springs(time: str) -> dict[str, str]:
     return {**keys, "time.steps_per_contact": STEPS.get(time, "10")}
 
 
-_SHARED = {one.name: one for one in _debris.DESIGN.factors}
-DESIGN = Design(
-    (
-        Factor(TIME, {one: _springs(one) for one in TIMES}),
-        _SHARED[_debris.AMOUNT],
-        _SHARED[CLOSURE],
-        PARTING_RULE,
-        friction_angle(),
-        _SHARED[PACKING],
-        DRAG_LAW,
-        SLIP_RULE,
-    )
-)
+DESIGN = design("fig17_egashira", {TIME: {one: _springs(one) for one in TIMES}})
 SHIPPED = DESIGN.base
 
 
@@ -148,9 +137,7 @@ def failed(error: RyusaError) -> PassedThrough | None:
     return PassedThrough(str(error)) if isinstance(error, OverlapTooLarge | WaterError) else None
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def sweep(plan: Plan) -> list[dict[str, str]]:
@@ -241,26 +228,22 @@ def _of_profiles(found: Found, plan: Plan) -> Finding:
     base = _runs(found, plan, SHIPPED)
     c, flow = float(np.mean([one.c for one in base])), base[0].beside(SAND)
     most = equilibrium_concentration(flow.slope, flow.friction_angle, flow.rho_s, flow.rho_w)
-    return Finding(
+    return finding(
         "fig17-egashira",
-        tuple(trial for one in settings(plan) for trial in tried(one)),
-        "Ito's measured profiles were not found in numbers; the closed forms of Egashira, Miyamoto & Itoh, "
-        "which were held against such experiments, stand for them. They are near the end of their range "
-        f"here: as many grains as {short(most)} of the depth would be a deposit by friction of {SAND}, and "
-        f"the case has {short(c)}.",
-        {**_debris.SETTLED, "closed form": "same concentration over the depth, k_f 0.16, k_d 0.0828, e 0.85"},
-        readings=(ANGLE,),
+        [trial for one in settings(plan) for trial in tried(one)],
         also=(
             *(_said(found, plan, one) for one in sweep(plan)),
             *(_stratified(base, angle) for angle in (SAND, GRAINS)),
             "the closed form has as many grains as the run, so that its flux differs from that of the run by "
             "the same factor as the speed",
         ),
-        beside=tuple(
+        beside=[
             Trial(one.part, one.choices, one.found, None, note=one.note)
             for chosen in sweep(plan)[1:]
             for one in tried(chosen)
-        ),
+        ],
+        most=short(most),
+        c=short(c),
     )
 
 
@@ -319,23 +302,19 @@ def _of_paths(found: Found, plan: Plan) -> Finding:
         steeps = [one.paths.steep for one in _runs(found, plan, chosen)]
         return str(over_seeds(steeps, "-")) if steeps else "none, grains pass through each other"
 
-    return Finding(
+    return finding(
         "fig17-parallel",
-        tuple(trial for one in settings(plan) for trial in tried(one)),
-        "Heights of a grain at equal ways along the bed, from diameter to diameter, so that neither speed "
-        "nor frames set what is seen of a path.",
-        _debris.SETTLED,
-        readings=(STRETCH,),
-        also=tuple(
+        [trial for one in settings(plan) for trial in tried(one)],
+        also=[
             f"collision time {one[TIME]}: heights gained and lost over the way, from diameter to diameter "
             f"{steep(one)}"
             for one in sweep(plan)
-        ),
-        beside=tuple(
+        ],
+        beside=[
             Trial(one.part, one.choices, one.found, None, note=one.note)
             for chosen in sweep(plan)[1:]
             for one in tried(chosen)
-        ),
+        ],
     )
 
 

@@ -12,9 +12,11 @@ from ryusa import figures
 from ryusa.study import Finding, Interval, Trial, exact, largest_mean, seeds_trial, short, transformed
 from ryusa_studies.osada2004 import _debris, _debris_run
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._debris import FREE, LOCKED, SETTLED, SHIPPED, Value
+from ryusa_studies.osada2004._debris import FREE, LOCKED, SHIPPED, Value
 from ryusa_studies.osada2004._debris_run import Debris
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import PHI, START, CaseRun, Found, Plan
+from ryusa_studies.osada2004._shares import halves, within_0_1
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow with rotation locked and free"
@@ -100,11 +102,8 @@ def _profile(chosen: Mapping[str, str], free: Sequence[Debris], locked: Sequence
     def change(rows: np.ndarray) -> Interval:
         return _factor(largest_mean([list(third) for third in rows.T], limits.unit, absolute=True))
 
-    one, other = (
-        limits.holds(exact(change(logs[half::2]).value, limits.unit)) if len(logs) > half else None
-        for half in (0, 1)
-    )
-    return Trial(PROFILE, chosen, change(logs), limits, halves=(one, other))
+    by_half = halves(list(logs), lambda half: change(np.array(half)).value, limits)
+    return Trial(PROFILE, chosen, change(logs), limits, halves=by_half)
 
 
 def _thirds(one: Debris) -> np.ndarray:
@@ -113,9 +112,8 @@ def _thirds(one: Debris) -> np.ndarray:
 
 def _lock(part: str, chosen: Mapping[str, str], runs: Sequence[Debris]) -> Trial:
     """One part of what is asked of locked grains; a single run that comes to rest is harm."""
-    trial = _debris.as_share(
-        seeds_trial(part, chosen, [LOCK[part](one) for one in runs], band("fig17-lock", part))
-    )
+    trial = seeds_trial(part, chosen, [LOCK[part](one) for one in runs], band("fig17-lock", part))
+    trial = replace(trial, found=within_0_1(trial.found))
     still = sum(not _debris.flows([one]) for one in runs)
     if part != REST or still == 0:
         return trial
@@ -148,12 +146,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
     both = partial(_both, text)
     return (
-        Finding(
+        finding(
             "fig17-lock",
-            tuple(lock),
-            "A flow that has begun stays a flow: contacts last less than 0.1 ms, and no two locked grains "
-            "stay together. But locked grains that lie on the bed may never leave it where free ones flow.",
-            {**SETTLED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
+            lock,
             also=(
                 *_rest(found, plan),
                 f"movers in rods, as shipped: {text(LOCKED, 'rods')}; with shuffled paths "
@@ -161,24 +156,18 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "the measured profiles that the paper fitted are not in its text",
             ),
         ),
-        Finding(
+        finding(
             "fig17-free",
-            tuple(faster),
-            "A grain that rotates rolls over the fixed grains instead of sliding: it loses less momentum "
-            f"to the bed, and the flow is faster. As shipped: {both('near_bed', 'm/s')} near the bed, "
-            f"{both('speed', 'm/s')} on average.",
-            {
-                **SETTLED,
-                "rotation": FREE,
-                "held against": "the same with rotation locked, which the paper fitted",
-            },
+            faster,
             also=(
                 f"speed of the second half second over that of the first {both('drift', '')}",
                 "concentration in the lower, middle and upper third: "
                 f"{_three(_free_runs(found, plan, SHIPPED))} against {_three(locked)}",
                 f"a twentieth of the free grains spin faster than {text(FREE, 'spin')} rad/s",
             ),
-            beside=tuple(beside),
+            beside=beside,
+            near_bed=both("near_bed", "m/s"),
+            speed=both("speed", "m/s"),
         ),
     )
 

@@ -11,8 +11,9 @@ from ryusa import figures
 from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 from ryusa_studies.osada2004 import _debris, _debris_run
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._debris import DESIGN, LONGER, SETTLED
+from ryusa_studies.osada2004._debris import DESIGN, LONGER
 from ryusa_studies.osada2004._debris_run import Debris
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 
 FIGURE = "fig18"
@@ -77,18 +78,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for one, here, flow in zip(sets, pairs, flowing, strict=True)
     ]
     return (
-        Finding(
+        finding(
             "fig18",
-            tuple(tried),
-            "A contact that lasts as long as a grain needs to pass its neighbour has not ended when the "
-            "next begins: grains stay in touch and share the momentum that one of them gains.",
-            {
-                **{
-                    name: value for name, value in SETTLED.items() if name not in {"k_n, k_s", "eta_n, eta_s"}
-                },
-                "short": "contacts of fig17, k_n 200 N/cm; long: springs over n^2, dashpots over n, so that "
-                "restitution and k_s/k_n stay",
-            },
+            tried,
             also=(
                 f"as shipped and at other lengths: {_series(found, plan)}",
                 f"the paper calls springs stable up to an overlap of {LONGEST:g} d",

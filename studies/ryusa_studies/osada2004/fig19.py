@@ -7,17 +7,12 @@ from matplotlib.figure import Figure
 
 from ryusa.figures.repose import surface as draw_surface
 from ryusa.results import Results
-from ryusa.study import Design, Factor, Finding, Trial
+from ryusa.study import Finding, Trial
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._parts import PACKING, PHI, ROTATION, SLIP, CaseRun, Found, Plan
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PACKING, PHI, SLIP, CaseRun, Found, Plan
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
 
 FIGURE = "fig19"
@@ -25,46 +20,15 @@ TITLE = "Slope of a heap after the removal of its wall"
 CLAIMS = ("fig19-locked", "fig19-free")
 FIT = "height range"  # of the slope: read from the same run
 WITH_FRICTION = "settled with friction"  # its angle is that of the setting
-HEAPS = Factor(
-    PACKING,
-    {
-        "500 grains within 20 %": {},
-        "sizes within 5 %": {"grains.spread": "0.05"},
-        "252 grains": {"build.columns": "18", "build.layers": "14"},
-        "floor ends at the gate": {"build.run_out": "0 cm", "build.drop": "4 cm"},
-        "smooth floor": {"build.floor": "plane", "build.run_out": "0 cm"},
-        WITH_FRICTION: {},
-    },
-)
-DESIGN = Design(
-    (
-        friction_angle(_heap.PHI_KEY),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        HEAPS,
-        Factor(FIT, {one: {} for one in _heap.RANGES}),
-    )
-)
+DESIGN = design("fig19")
 SLOPE_PART, MOVING_PART = "final slope", "share of grains still moving"
 BANDS = {rotation: band(f"fig19-{rotation}", SLOPE_PART) for rotation in ("locked", "free")}
 PAPER = {"locked": 33.0, "free": 18.0}  # deg
 # Slopes of locked heaps pass what is asked between the levels of the friction angle: shown beside.
 BETWEEN = ("12 deg", "14 deg", "16 deg")
-DECIDED = {
-    "locked": "A locked grain leaves its pocket only if the slope reaches 30 deg + phi, and columns of "
-    "locked grains move as rigid bodies, so the friction angle decides the slope. With the "
-    "dashpot kept while sliding, as in Eqs. (2) and (3) as printed, a viscous force adds to the "
-    "cap, and the heap creeps at m g/eta_s.",
-    "free": "A grain that may rotate rolls out of its pocket at 30 deg whatever phi is, so friction "
-    "matters little once grains roll rather than slide. Packing and floor determine the slope: on a "
-    "smooth floor the whole heap spreads.",
-}
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Free choices tried, the shipped ones first; the same for both heaps."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
@@ -124,17 +88,11 @@ def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
         "deg",
         f"observed for {min(ends):.1f} to {max(ends):.1f} s after the removal of the gate",
     )
-    common = {
-        ROTATION: rotation,
-        "k_n": "100 N/cm",
-        "packing, unless it says so": "settled without friction, turning; phi and rotation set 0.01 s before "
-        "the gate goes",
-    }
     beside = tuple(
         _heap.slope_trial(SLOPE_PART, {PHI: phi}, [found[one] for one in runs], _heap.MEAN, BANDS[rotation])
         for phi, runs in (between(plan) if rotation == "locked" else {}).items()
     )
-    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also, beside=beside)
+    return finding(f"fig19-{rotation}", trials, also=also, beside=beside)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.results import Results
 from ryusa.study import Finding
 from ryusa_studies.osada2004 import _saltation
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa_studies.osada2004._saltation import FREE, HOPS, LOCKED, MANY, SHIPPED, STIFF, Group, SaltationRun
+from ryusa_studies.osada2004._saltation import FREE, LOCKED, SHIPPED, Group, SaltationRun
 from ryusa_studies.osada2004.figures import SensitivityRow, sensitivity
 
 FIGURE = "fig20"
@@ -50,10 +50,7 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     ]
 
 
-def measure(run: Results, one: CaseRun) -> SaltationRun:
-    """Hops of all starts."""
-    del one
-    return _saltation.hops(run)
+measure = _saltation.measure
 
 
 def _pair(found: Found, plan: Plan, chosen: Mapping[str, str]) -> tuple[Group, Group]:
@@ -87,31 +84,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     ]
     free, locked = pairs[0]
     normal = _saltation.ratio(free, locked, "bed_normal")
-    done = {"k_n": STIFF, "starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
     return (
-        Finding(
+        finding(
             "fig20",
-            tuple(jumps),
-            "A locked grain is slowed by friction at every hit and leaves the bed slowly; a free grain, "
-            "once it spins, rolls off, keeps its speed and hits the next crest faster.",
-            settings=done,
-            also=tuple(
+            jumps,
+            also=[
                 f"{words}, rotation {rot}: {_saltation.mean(here, name, 'm')}"
                 for rot, here in ((LOCKED, locked), (FREE, free))
                 for words, name in (("mean jump height", "jump_height"), ("mean jump length", "jump_length"))
-            ),
+            ],
         ),
-        Finding(
+        finding(
             "fig20-shear",
-            tuple(shears),
-            f"The mean normal force on the bed is nearly the same (free over locked {normal}), so the "
-            "shear force decides. As printed (cap on the spring, dashpot kept) the shear force on a "
-            "locked grain has no limit. A rotating grain has little slip, so the friction force is small; "
-            "what slows it is the part of the normal force along the bed, as it hits the upstream side of "
-            "the crests.",
-            settings=done,
-            readings=(SHEAR,),
-            also=tuple(
+            shears,
+            also=[
                 f"{words}, rotation {rot}: {_saltation.mean(here, name, unit)}"
                 for rot, here in ((LOCKED, locked), (FREE, free))
                 for words, name, unit in (
@@ -119,7 +105,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     ("impulse against the flow per time", "bed_shear", "N"),
                     ("of it friction force alone", "bed_friction", "N"),
                 )
-            ),
+            ],
+            normal=normal,
         ),
     )
 

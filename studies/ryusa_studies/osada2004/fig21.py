@@ -10,10 +10,12 @@ from ryusa.measure import saltation, spin
 from ryusa.measure.spin import spin_against
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, over_seeds
+from ryusa.study import Finding, Trial, over_seeds
 from ryusa_studies.osada2004 import _saltation
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import START, CaseRun, Found, Plan
-from ryusa_studies.osada2004._saltation import FLOWING, FREE, HOPS, MANY, RESTING, SHIPPED, STIFF
+from ryusa_studies.osada2004._saltation import FLOWING, FREE, RESTING, SHIPPED
+from ryusa_studies.osada2004._shares import within_0_1
 from ryusa_studies.osada2004.figures.saltation import SpinPath, spin_over_way
 
 FIGURE = "fig21"
@@ -91,26 +93,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         trials += _saltation.trials("fig21", PART_SPIN, read, [[one.mean for one in here] for here in runs])
         shares = [[one.share(which) for one in here] for here in runs]
         trials += [
-            replace(one, found=share(one.found))
+            replace(one, found=within_0_1(one.found))
             for one in _saltation.trials("fig21", PART_GROWS, read, shares)
         ]
     base, rest = runs[0], [found[_run({**SHIPPED, START: RESTING}, seed)] for seed in plan.seeds]
     rolling = float(np.mean([one.against["rolling"] for one in base]))
     return (
-        Finding(
+        finding(
             "fig21",
-            tuple(trials),
-            "A hit accelerates the spin until the point of contact is at rest: spin times radius is "
-            f"{rolling:.2f} of the speed along the bed, so the spin follows from that speed. Beyond it "
-            "there is no gain: later hits increase and decrease the spin alike. So how a grain begins "
-            "decides for how many hits its spin grows: one that begins with the speed of the water gains "
-            "nearly all at its first hit, one that begins at rest as its speed grows.",
-            settings={
-                "rotation": FREE,
-                "k_n": STIFF,
-                "starts": f"{MANY['build.starts']} of {HOPS} hops a seed",
-            },
-            readings=(READING,),
+            trials,
             also=(
                 f"largest spin after settling {max(one.largest for one in base):.0f} rad/s",
                 *(
@@ -118,13 +109,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     for words, here in ((FLOWING, base), (RESTING, rest))
                 ),
             ),
+            rolling=rolling,
         ),
     )
-
-
-def share(found: Interval) -> Interval:
-    """The interval of a share, which cannot leave 0 to 1."""
-    return replace(found, low=max(0.0, found.low), high=min(1.0, found.high))
 
 
 def after(runs: Sequence[Spun]) -> str:

@@ -7,19 +7,14 @@ from dataclasses import replace
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.study import Design, Factor, Finding, Interval, Trial, exact, over_seeds, pseudo_values
+from ryusa.study import Finding, Interval, Trial, exact, over_seeds, pseudo_values
 from ryusa_studies.osada2004 import _movable_bed
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    DRAG_LAW,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean, water_of_a_bed
-from ryusa_studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._shares import halves
 from ryusa_studies.osada2004.figures import rod_lengths, rods
 
 FIGURE = "fig22"
@@ -28,34 +23,7 @@ CLAIMS = ("fig22",)
 CASE = "fig22"
 LOCKED, FREE = "locked", "free"
 SLOPE = "slope (tau_star)"
-DESIGN = Design(
-    (
-        friction_angle("timeline.0.friction_angle"),
-        SLIP_RULE,
-        Factor(
-            SLOPE,
-            {
-                "1/4 (1.5)": {},
-                "1/5 (1.2)": {"timeline.2.slope": "1/5"},
-                "3/20 (0.9)": {"timeline.2.slope": "3/20"},
-                "1/10 (0.6)": {"timeline.2.slope": "1/10"},
-            },
-        ),
-        DRAG_LAW,
-        PARTING_RULE,
-        Factor(
-            PACKING,
-            {
-                "5 layers, settled without friction": {},
-                "8 layers": {"build.layers": "8"},
-                "settled with friction": {"contact.friction_angle": "30 deg"},
-                "sizes within 30 %": {"grains.spread": "0.3"},
-            },
-        ),
-        water_of_a_bed("rest"),
-        STIFFNESS_RATIO,
-    )
-)
+DESIGN = design("fig22")
 SHIPPED = DESIGN.base
 MOVERS = 10  # locked, of all seeds and windows, below which nothing is said about rods
 STANDS = "nothing moves"
@@ -63,25 +31,12 @@ PART_RODS = "movers in rods minus those with shuffled paths"
 PART_MORE = "movers in rods, locked over free, in decades"
 PART_LESS = "movers in rods, locked minus free"  # judged for two hours of 2026-11-21, as registered; shown
 LEAST = 0.01  # share in rods that counts as least in a ratio
-SETTLED = {
-    "d": "0.2 cm",
-    "k_n": "100 N/cm",
-    "restitution": "0.7",
-    "bed": "20 columns of grains over fixed ones of random height",
-    "water": "column, 2 cm deep",
-    "window": "1 to 2 s",
-    "rod": "movers that touch (gap below 0.05 d) throughout 0.07 s = 5 sqrt(d/g), in which they go 1 d "
-    "or more and turn about each other by less than 15 deg",
-    "null model": "every mover goes the way of one picked from its layer and any window",
-}
 Runs = Sequence[tuple[MovableBedRun, MovableBedRun]]  # locked and free, by seed
 
 measure = _movable_bed.measure
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
@@ -148,11 +103,7 @@ def _trial(part: str, chosen: Mapping[str, str], pairs: Runs) -> Trial:
     if _movers([locked for locked, _ in pairs]) < MOVERS:
         return Trial(part, chosen, exact(math.nan, limits.unit), limits, note=STANDS)
     found = _jackknife(value, pairs, most)
-    one, other = (
-        limits.holds(exact(value(pairs[half::2]), limits.unit)) if len(pairs) > half else None
-        for half in (0, 1)
-    )
-    return Trial(part, chosen, found, limits, halves=(one, other))
+    return Trial(part, chosen, found, limits, halves=halves(pairs, value, limits))
 
 
 def _jackknife(value: Callable[[Runs], float], pairs: Runs, most: float) -> Interval:
@@ -169,16 +120,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     shipped = _both(found, plan, SHIPPED)
     if _movers([locked for locked, _ in shipped]) >= MOVERS:
         tried.append(Trial(PART_LESS, SHIPPED, _jackknife(_difference, shipped, 1.0), None))
-    return (
-        Finding(
-            "fig22",
-            tuple(tried),
-            "A locked grain cannot roll out of the pocket between two others; it moves only with its row. "
-            "Touching neighbours therefore keep their arrangement and creep together.",
-            SETTLED,
-            also=tuple(_words(found, plan, one) for one in settings(plan)),
-        ),
-    )
+    return (finding("fig22", tried, also=[_words(found, plan, one) for one in settings(plan)]),)
 
 
 def _words(found: Found, plan: Plan, chosen: Mapping[str, str]) -> str:

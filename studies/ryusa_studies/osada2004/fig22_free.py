@@ -6,20 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
+from ryusa.study import Finding, Trial, over_seeds, seeds_trial
 from ryusa.study.interval import magnitude
 from ryusa_studies.osada2004 import _movable_bed
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._factors import (
-    DRAG_LAW,
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean, water_of_a_bed
-from ryusa_studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._movable_bed import MovableBedRun, mean
+from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._shares import halves
 
 FIGURE = "fig22"
 TITLE = "Movable bed under water, rotation free, without and with a resistance"
@@ -33,41 +28,11 @@ RESISTANCES: dict[str, dict[str, str]] = {
     "rolling friction, mu_r 0.5": {**ROLLING, "rolling.coefficient": "0.5"},
     "water torque, Dennis": {"water.torque": "Dennis"},
 }
-DESIGN = Design(
-    (
-        Factor(
-            PACKING,
-            {
-                "3 layers, bed of random height": {},
-                "flat bed": {"build.bed": "flat"},
-                "6 layers": {"build.layers": "6"},
-                "sizes within 30 %": {"grains.spread": "0.3"},
-            },
-        ),
-        PARTING_RULE,
-        friction_angle(),
-        Factor(
-            TAU_STAR,
-            {
-                "0.3": {},
-                "0.1": {"motion.slope": "1/60"},
-                "0.2": {"motion.slope": "1/30"},
-                "0.5": {"motion.slope": "1/12"},
-            },
-        ),
-        water_of_a_bed("steady"),
-        DRAG_LAW,
-        Factor(RESISTANCE, {one: {} for one in RESISTANCES}),
-        SLIP_RULE,
-        STIFFNESS_RATIO,
-    )
-)
+DESIGN = design("fig22_free")
 SHIPPED = DESIGN.base
 
 
-def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+settings = DESIGN.sets
 
 
 def _run(chosen: Mapping[str, str], seed: int, resisted: bool) -> CaseRun:
@@ -109,13 +74,8 @@ def _changed(
     limits, (value, least) = band("fig22-free", part), RATIOS[part]
     logs = [_decades(value(a), value(b), least) for a, b in zip(bare, resisted, strict=True)]
     found = magnitude(over_seeds(logs, limits.unit))
-    one, other = (
-        limits.holds(exact(abs(sum(logs[half::2])) / len(logs[half::2]), limits.unit))
-        if len(logs) > half
-        else None
-        for half in (0, 1)
-    )
-    return Trial(part, chosen, found, limits, halves=(one, other), note=_direction(logs))
+    by_half = halves(logs, lambda half: abs(sum(half)) / len(half), limits)
+    return Trial(part, chosen, found, limits, halves=by_half, note=_direction(logs))
 
 
 def _decades(above: float, below: float, least: float) -> float:
@@ -138,25 +98,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         tried.append(seeds_trial(PART_SPIN, one, spins, band("fig22-free", PART_SPIN)))
         tried += [_changed(part, one, bare, resisted) for part in RATIOS]
     return (
-        Finding(
+        finding(
             "fig22-free",
-            tuple(tried),
-            "A grain that may rotate rolls over the bed; what resists its spin takes momentum from it at "
-            f"every contact, or from the water. {_words(found, plan, SHIPPED)}.",
-            {
-                "d": "0.2 cm",
-                "k_n": "100 N/cm",
-                "restitution": "0.7",
-                "bed": "20 columns of grains over fixed ones",
-                "water": "column, 2 cm deep, steady at the beginning",
-                "rotation": "free",
-                "window": "1 to 2 s",
-            },
-            also=tuple(
+            tried,
+            also=[
                 f"{', '.join(value for key, value in one.items() if value != SHIPPED[key])}: "
                 f"{_words(found, plan, one)}"
                 for one in settings(plan)[1:]
-            ),
+            ],
+            shipped=_words(found, plan, SHIPPED),
         ),
     )
 

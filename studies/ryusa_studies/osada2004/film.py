@@ -14,7 +14,7 @@ from ryusa.measure.apparent_contact import near_pairs, on_film
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
-from ryusa_studies.osada2004._factors import n_settings
+from ryusa_studies.osada2004 import claims
 from ryusa_studies.osada2004._film import (
     COLLISION,
     CUT,
@@ -93,7 +93,7 @@ class Filmed:
 
 def settings(claim: str, plan: Plan) -> list[dict[str, str]]:
     """Sets of choices that need runs of their own, the base first."""
-    return DESIGNS[claim].settings(n_settings(plan))
+    return DESIGNS[claim].sets(plan)
 
 
 def run(claim: str, chosen: Mapping[str, str], seed: int) -> CaseRun:
@@ -175,7 +175,7 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
         "but that two grains are near each other. Mean time that pairs are "
         f"within {eps:g} d: {stays}.",
         {
-            "flow": FLOWS[claim].setup,
+            "flow": claims.CLAIMS[claim].setup,
             "restitution": f"{E:g}",
             "springs": "those of the figure; 100 times as stiff for 1e-5 s",
         },

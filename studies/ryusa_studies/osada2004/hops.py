@@ -5,16 +5,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.results import Results
 from ryusa.study import Finding, Trial, short
 from ryusa_studies.osada2004 import _saltation
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa_studies.osada2004._saltation import (
-    HOPS,
     K_N,
     LOCKED,
-    MANY,
     SHARED,
     SHIPPED,
     SOFT,
@@ -72,10 +70,7 @@ def _series(keys: Mapping[str, str], seed: int) -> CaseRun:
     return _saltation.run(SHIPPED, LOCKED, seed, keys)
 
 
-def measure(run: Results, one: CaseRun) -> SaltationRun:
-    """Hops of all starts."""
-    del one
-    return _saltation.hops(run)
+measure = _saltation.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -99,16 +94,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     ]
     soft, base = pairs[0]
     sweep = _sweep(found, plan)
-    done = {"rotation": LOCKED, "starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
     return (
-        Finding(
+        finding(
             "hops",
-            tuple(jumps),
-            "A stiff contact ends before the grain has moved along the bed, so only e and the law of "
-            f"shear matter. During a soft contact it travels {_travel(soft)} d within a contact (u t/d "
-            f"at {SOFT}; {_travel(base)} at {STIFF}), so it is deflected over the crest instead of "
-            "thrown back, and its mean jump height decreases.",
-            settings=done,
+            jumps,
             also=(
                 f"as shipped, u t/d: {_saltation.listed({k: _travel(here) for k, here in sweep.items()})}",
                 *(
@@ -117,15 +106,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     for words, name in (("mean jump height", "jump_height"), ("mean length", "jump_length"))
                 ),
             ),
+            soft=_travel(soft),
+            base=_travel(base),
         ),
-        Finding(
+        finding(
             "hops-impulse",
-            tuple(impulses),
-            "The impulse of one contact is fixed by mass, closing speed and e while its line of centres "
-            "keeps its direction. The impulse of a bounce follows from how high and how long the grain jumps "
-            "as well: the bed carries its weight in any case, in fewer bounces if they are higher.",
-            settings=done,
-            readings=(IMPULSE,),
+            impulses,
             also=(
                 "as shipped, impulse over mass and closing speed: "
                 + _saltation.listed({k: mean(here, "impact", "-") for k, here in sweep.items()}),

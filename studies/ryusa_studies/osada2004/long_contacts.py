@@ -13,6 +13,7 @@ from ryusa.results import Results
 from ryusa.study import Finding, Trial, over_seeds, short
 from ryusa_studies.osada2004 import _debris, fig18
 from ryusa_studies.osada2004._debris_run import concentration
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CLOSURE, CaseRun, Found, Plan, paper_run
 
 FIGURE = "long-contacts"
@@ -136,16 +137,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for one in settings(plan)
     ]
     return (
-        Finding(
-            "long-contacts",
-            tuple(tried),
-            "Springs are linear: the overlap is the closing speed times the collision time over pi, the way "
-            "during a contact is the speed along the bed times it. In one flow both grow alike, by the ratio "
-            "of the two speeds, so that no run has the long contact without the deep overlap.",
-            {"restitution": "as in fig17 and fig13, whatever the collision time", "rotation": "locked in the "
-             "debris flow, free in the avalanche"},
-            also=tuple(_words(found, plan, flow) for flow in _flows(plan)),
-        ),
+        finding("long-contacts", tried, also=[_words(found, plan, flow) for flow in _flows(plan)]),
     )  # fmt: skip
 
 

@@ -8,35 +8,27 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.laws.collision import collision_time
-from ryusa.study import Band, Design, Finding, Trial, over_range
+from ryusa.study import Band, Finding, Trial, over_range
 from ryusa_studies.osada2004 import _drops, fig05
-from ryusa_studies.osada2004._drops import AT_STEPS, EXACT, Setup
-from ryusa_studies.osada2004._factors import PARTING_RULE, n_settings
-from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa_studies.osada2004._drops import EXACT, Setup
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import drop_chart
 
 FIGURE = "pair"
 TITLE = "Contact time with the struck grain free to move"
 CLAIMS = ("pair",)
 SPEED, DASHPOT, TIMING = "impact speed (pair)", "dashpot (pair)", "timing (pair)"
-OF_PAIR, OF_FIXED = "e = 0.7 for the pair", "that of the fixed partner"
-DESIGN = Design(
-    (
-        _drops.choice(SPEED, _drops.SPEED, "0.1 m/s", "1 m/s"),
-        PARTING_RULE,
-        _drops.choice(DASHPOT, OF_PAIR, OF_FIXED),
-        _drops.choice(TIMING, EXACT, AT_STEPS),
-    )
-)
+OF_FIXED = "that of the fixed partner"
+DESIGN = design("pair")
 SHIPPED = DESIGN.base
 LITTLE = Band(
     0.9, 1.1, "-", f"should not differ much: 0.9 to 1.1 of the fixed case, as for fig5; {_drops.ABOUT}"
 )
 
 
-def choices(plan: Plan) -> list[dict[str, str]]:
-    """Settings, the one as shipped first."""
-    return DESIGN.settings(n_settings(plan))
+choices = DESIGN.sets
 
 
 def two(chosen: Mapping[str, str], k_n: float) -> tuple[Setup, Setup]:
@@ -52,12 +44,7 @@ def setups(plan: Plan) -> list[Setup]:
     return list(dict.fromkeys(one for way in ways for one in way))
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Free and fixed partner for every set and spring."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure, rows = _drops.tasks_of(setups), _drops.measure, _drops.rows_of(setups)
 
 
 def ratio(found: Found, chosen: Mapping[str, str], k_n: float) -> float:
@@ -85,22 +72,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     if one_dashpot:
         e = np.median(found[two(one_dashpot[0], springs[-1])[0].task].e)
         also.append(f"one dashpot for both: e = {e:.2f} between free grains where it is 0.7 on a fixed one")
-    return (
-        Finding(
-            "pair",
-            tuple(trials),
-            "Two free grains oscillate about their common centre with half the mass, so Eq. (8) gives a "
-            f"factor of {0.5**0.5:.3f} in time, whatever the dashpot. With a fixed partner weight acts in "
-            "addition.",
-            {"restitution": "0.7", "d": _drops.DIAMETER},
-            also=tuple(also),
-        ),
-    )
-
-
-def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per drop."""
-    return _drops.rows(setups(plan), found)
+    return (finding("pair", trials, also=also),)
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:

@@ -10,13 +10,15 @@ from ryusa.cases import case_path
 from ryusa.laws.transport import q_star_meyer_peter_mueller
 from ryusa.measure import transport
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, case_run, not_negative, over_seeds, seeds_trial, short
+from ryusa.study import Finding, Interval, Trial, case_run, over_seeds, short
 from ryusa_studies.osada2004 import _heap, rolling_friction
 from ryusa_studies.osada2004._bands import band
-from ryusa_studies.osada2004._parts import PHI, CaseRun, Found, Plan, paper_run
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PHI, CaseRun, Found, Plan
 from ryusa_studies.osada2004._rolling_fit import HeapFit, limits
+from ryusa_studies.osada2004._shares import positive
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
-from ryusa_studies.osada2004.rolling_friction import DEBRIS, GRAVEL, NONE, SPINS, MeasuredFlow
+from ryusa_studies.osada2004.rolling_friction import GRAVEL, NONE, MeasuredFlow
 
 FIGURE = "fig23"
 TITLE = "A coefficient of rolling friction, fitted on the heap alone in a wide box, and then used blind"
@@ -26,11 +28,6 @@ COEFFICIENTS = ("0.25", "0.5", "1", "2")  # the box
 ANGLES = ("30 deg", "20 deg", "40 deg")  # settings, the first as shipped
 # Coefficient of each setting, by the rule of the registration.
 FITTED: Mapping[str, str] = {"30 deg": "0.5", "20 deg": "1", "40 deg": "1"}
-FIT = (
-    "fitted on 28 November 2026, seeds 1 to 4, before any blind run: no coefficient of the box gives 38 deg "
-    "at any friction angle (at most 34.3, 35.7 and 35.0 deg at 30, 20 and 40 deg), so that each is the "
-    "smallest within one standard error of the nearest"
-)
 STEPS, STEPS_EACH = 10.0, 20.0  # in the shortest contact: at least, and for each unit of the coefficient
 PARTNERS = 6  # in a plane packing, for which STEPS_EACH is stable
 WATER_EACH = 3.3  # steps between two exchanges of water and grains, over those in a contact
@@ -52,38 +49,29 @@ def steps(mu_r: str) -> str:
     return f"{max(STEPS, STEPS_EACH * float(mu_r)):g}" if mu_r != NONE else f"{STEPS:g}"
 
 
-def _rolling(mu_r: str) -> dict[str, str]:
-    """Keys of the law and of the step; as the cases ship without rolling friction."""
-    if mu_r == NONE:
-        return {}
-    keys = {"rolling.model": "spring-dashpot-slider", "rolling.coefficient": mu_r}
-    return {**keys, "time.steps_per_contact": steps(mu_r)}
-
-
-def _angle(key: str, angle: str) -> dict[str, str]:
-    return {} if angle == ANGLES[0] else {key: angle}
+def _step(mu_r: str) -> dict[str, str]:
+    """Key of the step; as the cases ship without rolling friction."""
+    return {} if mu_r == NONE else {"time.steps_per_contact": steps(mu_r)}
 
 
 def heap_run(mu_r: str, angle: str, seed: int, more: Mapping[str, str]) -> CaseRun:
     """One heap of Fig. 19, rotation free."""
-    return _heap.run("free", seed, {**_rolling(mu_r), **_angle(_heap.PHI_KEY, angle), **more})
+    return rolling_friction.heap_run(mu_r, angle, seed, {**_step(mu_r), **more})
 
 
 def spin_run(mu_r: str, angle: str, seed: int) -> CaseRun:
     """Four saltating grains of Fig. 21."""
-    changed = {**_rolling(mu_r), **_angle("contact.friction_angle", angle)}
-    return paper_run(SPINS, changed | {"motion.rotation": "free", "build.starts": "4"}, seed)
+    return rolling_friction.spin_run(mu_r, angle, seed, _step(mu_r))
 
 
 def debris_run(mu_r: str, angle: str, seed: int) -> CaseRun:
     """One debris flow of Fig. 17, rotation free."""
-    changed = {**_rolling(mu_r), **_angle("contact.friction_angle", angle)}
-    return paper_run(DEBRIS, changed | {"motion.rotation": "free"}, seed)
+    return rolling_friction.debris_run(mu_r, angle, seed, _step(mu_r))
 
 
 def bed_run(tau_star: str, mu_r: str, angle: str, seed: int, more: Mapping[str, str]) -> CaseRun:
     """One bed of gravel in three dimensions, with the laws that bed load needs (docs/river.md)."""
-    changed = {**_rolling(mu_r), **_angle("contact.friction_angle", angle), **more}
+    changed = {**rolling_friction.keys(mu_r, angle), **_step(mu_r), **more}
     changed |= {"motion.slope": STRESSES[tau_star]}
     changed |= {"water.column.interval": f"{round(WATER_EACH * float(steps(mu_r)))}"}
     return case_run(case_path(f"{BED}.toml"), changed, seed=seed)
@@ -134,15 +122,10 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     for seed in plan.seeds:
         for angle in todo.angles:
             runs += [heap_run(one, angle, seed, todo.heap) for one in (FITTED[angle], *todo.fitted)]
-            runs += [*todo.blind(FITTED[angle], angle, seed), _locked(angle, seed)]
+            runs += [*todo.blind(FITTED[angle], angle, seed), rolling_friction.locked_run(seed, angle)]
         if todo.plain:
             runs += todo.blind(NONE, ANGLES[0], seed)
     return list(dict.fromkeys(runs))
-
-
-def _locked(angle: str, seed: int) -> CaseRun:
-    """The debris flow with rotation locked, as the paper fitted it."""
-    return paper_run(DEBRIS, _angle("contact.friction_angle", angle), seed)
 
 
 def measure(results: Results, one: CaseRun) -> _heap.Heap | float | MeasuredFlow:
@@ -173,18 +156,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             for one in _blind(found, plan, NONE, ANGLES[0], {})
         ]
     return [
-        Finding(
-            CLAIMS[0],
-            tuple(trials),
-            "A contact slides before it rolls as soon as mu_r is above 2 tan of the friction angle (equal "
-            "spheres): from there on a heap gets no steeper. Steps: at least "
-            f"{STEPS_EACH:g} mu_r in the shortest contact, which keeps the springs of a grain with "
-            f"{PARTNERS} partners stable. {_edges(found, plan)}",
-            {"rotation": "free", "law": "spring-dashpot-slider, cap mu_r R* N", "coefficients": FIT},
-            also=_words(found, plan),
-            beside=tuple(beside),
+        finding(
+            CLAIMS[0], trials, also=_words(found, plan), beside=beside, steps=STEPS_EACH, partners=PARTNERS,
+            edges=_edges(found, plan),
         )
-    ]
+    ]  # fmt: skip
 
 
 def _fit(found: Found, plan: Plan, angle: str) -> HeapFit:
@@ -214,7 +190,10 @@ def _place(fit: HeapFit, chosen: Mapping[str, str]) -> Trial:
 def _blind(found: Found, plan: Plan, mu_r: str, angle: str, chosen: Mapping[str, str]) -> list[Trial]:
     """What is predicted, part by part."""
     todo = Runs.of(plan)
-    flows = [(found[debris_run(mu_r, angle, one)], found[_locked(angle, one)]) for one in plan.seeds]
+    flows = [
+        (found[debris_run(mu_r, angle, one)], found[rolling_friction.locked_run(one, angle)])
+        for one in plan.seeds
+    ]
     numbers: dict[str, list[float]] = {
         SPUN: [found[spin_run(mu_r, angle, one)] for one in plan.seeds],
         FAST: [free.near_bed / locked.near_bed for free, locked in flows],
@@ -224,16 +203,11 @@ def _blind(found: Found, plan: Plan, mu_r: str, angle: str, chosen: Mapping[str,
             for tau, more in todo.beds_at(angle).items()
         },
     }
-    trials = [_positive(part, chosen, values) for part, values in numbers.items()]
+    trials = [positive(part, chosen, values, band(CLAIMS[0], part)) for part, values in numbers.items()]
     if todo.space is not None:
         heaps = [found[heap_run(mu_r, angle, one, todo.space)] for one in plan.seeds]
         trials.append(_heap.slope_trial(SPACE, chosen, heaps, _heap.MEAN, band(CLAIMS[0], SPACE)))
     return trials
-
-
-def _positive(part: str, chosen: Mapping[str, str], values: Sequence[float]) -> Trial:
-    trial = seeds_trial(part, chosen, values, band(CLAIMS[0], part))
-    return Trial(part, chosen, not_negative(trial.found), trial.band, halves=trial.halves)
 
 
 def _edges(found: Found, plan: Plan) -> str:

@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 from ryusa.laws.transport import q_star_meyer_peter_mueller
 from ryusa.measure import profiles, spin, transport
 from ryusa.results import Results
-from ryusa.study import Finding, Interval, Trial, not_negative, over_seeds, seeds_trial, short
+from ryusa.study import Finding, Interval, Trial, not_negative, over_seeds, short
 from ryusa_studies.osada2004 import _heap
 from ryusa_studies.osada2004._bands import band
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan, paper_run
 from ryusa_studies.osada2004._rolling_fit import SlopeFit, SpinFit, best_pair, limits, resampled_pairs
+from ryusa_studies.osada2004._shares import positive
 from ryusa_studies.osada2004.figures.slopes import Slope, slopes
 
 FIGURE = "fig23"
@@ -26,7 +28,8 @@ COEFFICIENTS, ANGLES = ("0.25", "0.5", "1"), ("25 deg", "40 deg")  # of the fit
 MORE = ("2",)  # coefficients of the saltating grain alone: with it a heap in ten steps a contact never rests
 PAIR = ("1", "25 deg")  # of the fit with seeds 1 to 4; committed before a blind run was made
 NONE = "without"
-CHOICE = "rolling friction"
+NOTHING: Mapping[str, str] = {}
+CHOICE, FRICTION = "rolling friction", "contact.friction_angle"
 GRAVEL = 38.0  # [deg]
 VERY_LARGE = 450.0  # half of the paper's 900 [rad/s]
 STRESSES = {"0.1": "1/60", "0.3": "1/20", "0.5": "1/12"}  # tau_star of the movable bed, and its slope
@@ -52,43 +55,37 @@ class MeasuredFlow:
     tau_star: float
 
 
-def _rolling(mu_r: str) -> dict[str, str]:
-    if mu_r == NONE:
-        return {}
-    return {"rolling.model": "spring-dashpot-slider", "rolling.coefficient": mu_r}
+def keys(mu_r: str, angle: str, key: str = FRICTION) -> dict[str, str]:
+    """Keys of the law and of the friction angle that differ from those of the cases."""
+    law = {"rolling.model": "spring-dashpot-slider", "rolling.coefficient": mu_r}
+    return ({} if mu_r == NONE else law) | ({} if angle == "30 deg" else {key: angle})
 
 
-def _angle(key: str, angle: str, shipped: str = "30 deg") -> dict[str, str]:
-    return {} if angle == shipped else {key: angle}
-
-
-def heap_run(mu_r: str, angle: str, seed: int) -> CaseRun:
+def heap_run(mu_r: str, angle: str, seed: int, more: Mapping[str, str] = NOTHING) -> CaseRun:
     """One heap of Fig. 19, rotation free."""
-    return _heap.run("free", seed, _rolling(mu_r) | _angle(_heap.PHI_KEY, angle))
+    return _heap.run("free", seed, {**keys(mu_r, angle, _heap.PHI_KEY), **more})
 
 
-def spin_run(mu_r: str, angle: str, seed: int) -> CaseRun:
+def spin_run(mu_r: str, angle: str, seed: int, more: Mapping[str, str] = NOTHING) -> CaseRun:
     """Four saltating grains of Fig. 21."""
-    changed = _rolling(mu_r) | _angle("contact.friction_angle", angle)
+    changed = {**keys(mu_r, angle), **more}
     return paper_run(SPINS, changed | {"motion.rotation": "free", "build.starts": "4"}, seed)
 
 
-def debris_run(mu_r: str, angle: str, seed: int) -> CaseRun:
+def debris_run(mu_r: str, angle: str, seed: int, more: Mapping[str, str] = NOTHING) -> CaseRun:
     """One debris flow of Fig. 17, rotation free."""
-    changed = _rolling(mu_r) | _angle("contact.friction_angle", angle)
-    return paper_run(DEBRIS, changed | {"motion.rotation": "free"}, seed)
+    return paper_run(DEBRIS, {**keys(mu_r, angle), **more, "motion.rotation": "free"}, seed)
 
 
-def locked_run(seed: int) -> CaseRun:
+def locked_run(seed: int, angle: str = "30 deg") -> CaseRun:
     """The same with rotation locked, as the paper fitted it."""
-    return paper_run(DEBRIS, {}, seed)
+    return paper_run(DEBRIS, keys(NONE, angle), seed)
 
 
 def bed_run(tau_star: str, mu_r: str, angle: str, seed: int) -> CaseRun:
     """One movable bed in weak flow, rotation free."""
-    changed = _rolling(mu_r) | _angle("contact.friction_angle", angle)
     slope = STRESSES[tau_star]
-    return paper_run(BED, changed | ({} if slope == "1/20" else {"motion.slope": slope}), seed)
+    return paper_run(BED, keys(mu_r, angle) | ({} if slope == "1/20" else {"motion.slope": slope}), seed)
 
 
 def _fitted(plan: Plan) -> list[tuple[str, str]]:
@@ -136,7 +133,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Whether the fitted pair serves heap and spin, and flows that the fit has not seen."""
     chosen = {CHOICE: f"mu_r {PAIR[0]}, friction angle {PAIR[1]}"}
     trials = [_slope(found, plan, chosen)]
-    trials += [_positive(part, chosen, values) for part, values in _numbers(found, plan, PAIR).items()]
+    numbers = _numbers(found, plan, PAIR)
+    trials += [positive(part, chosen, values, BANDS[part]) for part, values in numbers.items()]
     plain = _numbers(found, plan, (NONE, "30 deg")) if _fitted(plan) else {}
     beside = [
         Trial(part, {CHOICE: NONE}, not_negative(over_seeds(values, BANDS[part].unit)), None)
@@ -147,17 +145,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for one in STRESSES
     }
     return [
-        Finding(
+        finding(
             "rolling-friction",
-            tuple(trials),
-            "A heap rests on contacts that are loaded all the time, a saltating grain meets the bed for a "
-            "ten-thousandth of a second at a time, and a torque f N acts on both in proportion to the load.",
-            {"rotation": "free", "law": "spring-dashpot-slider, cap mu_r R* N"},
+            trials,
             also=(
                 *(f"tau_star at the bed, {one} asked: {short(mean)}" for one, mean in stress.items()),
                 *_words(found, plan),
             ),
-            beside=tuple(beside),
+            beside=beside,
         )
     ]
 
@@ -172,11 +167,6 @@ def _slope(found: Found, plan: Plan, chosen: Mapping[str, str]) -> Trial:
     n = sum(len(one) for one in slope.runs.values())
     how = f"95 % of resamples of the fit to {n} heaps"
     return Trial(HEAP, chosen, Interval(slope.at(*_key(*PAIR)), low, high, "deg", n, how), BANDS[HEAP])
-
-
-def _positive(part: str, chosen: Mapping[str, str], values: Sequence[float]) -> Trial:
-    trial = seeds_trial(part, chosen, values, BANDS[part])
-    return Trial(part, chosen, not_negative(trial.found), BANDS[part], halves=trial.halves)
 
 
 def _numbers(found: Found, plan: Plan, pair: tuple[str, str]) -> dict[str, list[float]]:
@@ -251,7 +241,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 def line(one: CaseRun, number: _heap.Heap | float | MeasuredFlow) -> dict[str, object]:
     """Setting and numbers of one run."""
     made: dict[str, object] = {"case": one.case, "mu_r": one.get("rolling.coefficient", NONE)}
-    made |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get("contact.friction_angle", "30 deg")}
+    made |= {"friction_angle": one.get(_heap.PHI_KEY) or one.get(FRICTION, "30 deg")}
     made |= {"bed_slope": one.get("motion.slope"), "seed": one.get("seed")}
     if isinstance(number, _heap.Heap):
         return made | _heap.line(number)

@@ -5,16 +5,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.results import Results
 from ryusa.study import Finding, over_seeds, short
 from ryusa_studies.osada2004 import _saltation
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa_studies.osada2004._saltation import (
     FREE,
-    HOPS,
     K_N,
     LOCKED,
-    MANY,
     NORMAL,
     SHIPPED,
     TANGENTIAL,
@@ -53,10 +51,7 @@ def _series(keys: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     return _saltation.run(SHIPPED, rotation, seed, keys)
 
 
-def measure(run: Results, one: CaseRun) -> SaltationRun:
-    """Hops of all starts."""
-    del one
-    return _saltation.hops(run)
+measure = _saltation.measure
 
 
 def _group(found: Found, plan: Plan, chosen: Mapping[str, str], rotation: str) -> Group:
@@ -88,18 +83,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     locked, free = runs[LOCKED][0], runs[FREE][0]
     speeds = [np.mean([one.value("speed") for one in here]) for here in (locked, free)]
     turning = [np.mean([np.median(one.turning) for one in here]) for here in (locked, free)]
-    starts = {"starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
     sweep = _sweep(found, plan)
     return (
-        Finding(
+        finding(
             "spin-time",
-            tuple(_saltation.trials("spin-time", PART, sets, ratios, skims)),
-            f"A free grain is faster along the bed ({speeds[1]:.2f} against {speeds[0]:.2f} m/s), so that "
-            f"the line of centres turns more during a contact (u^2 t/(d v), median {turning[1]:.2g} "
-            f"against {turning[0]:.2g}) and the contact ends earlier. This rotation decreases with the "
-            "contact time, so the difference vanishes with increasing stiffness.",
-            settings=starts,
-            also=tuple(
+            _saltation.trials("spin-time", PART, sets, ratios, skims),
+            also=[
                 f"as shipped, rotation {rot}, {words}: "
                 + _saltation.listed(
                     {k: short(float(np.mean([value(one) for one in here[rot]]))) for k, here in sweep.items()}
@@ -109,17 +98,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     ("contact time over Eq. (8)", lambda one: one.value("contact_time_over_eq8")),
                     ("u t/d", lambda one: one.travel),
                 )
-            ),
+            ],
+            held=speeds[1],
+            rolling=speeds[0],
+            held_turning=turning[1],
+            rolling_turning=turning[0],
         ),
-        Finding(
-            "spin-e",
-            tuple(spreads),
-            "The normal spring and dashpot do not feel the spin. The tangential restitution follows from "
-            "slip, friction limit and, for a free grain, from the moment of inertia: what a contact returns "
-            "depends on the spin and angle with which it begins.",
-            settings=starts,
-            readings=(WHICH,),
-        ),
+        finding("spin-e", spreads),
     )
 
 

@@ -7,11 +7,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa.measure.statistics import Floats
-from ryusa.study import Band, Design, Finding, Interval, Trial, over_range
+from ryusa.study import Band, Finding, Interval, Trial, over_range
 from ryusa_studies.osada2004 import _drops
 from ryusa_studies.osada2004._drops import AT_STEPS, COPIES, NO_TENSION, TENSION, DropRun, Setup
-from ryusa_studies.osada2004._factors import PARTING_RULE, n_settings
-from ryusa_studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa_studies.osada2004._factors import design
+from ryusa_studies.osada2004._findings import finding
+from ryusa_studies.osada2004._parts import PARTING, Found, Plan
 from ryusa_studies.osada2004.figures import ReboundCurve, rebounds
 from ryusa_studies.osada2004.forward_euler import restitution
 
@@ -23,13 +24,7 @@ OURS = "semi-implicit"
 EULER = "forward differences, spring from overlap"
 SUMMED = "forward differences, spring summed as in Eq. (1)"
 E, LEAST = 0.7, 10.0
-DESIGN = Design(
-    (
-        _drops.choice(SCHEME, OURS, EULER, SUMMED),
-        PARTING_RULE,
-        _drops.choice(RESTITUTION, "0.7", "0.6", "0.8"),
-    )
-)
+DESIGN = design("steps")
 # Restitution off by more is abnormal: half of what the paper's 0.6 to 0.8 for sand leaves about 0.7
 OFF = 0.05
 NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from that of the case")
@@ -57,12 +52,7 @@ def setups(plan: Plan) -> list[Setup]:
     ]
 
 
-def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """One run per setup."""
-    return [one.task for one in setups(plan)]
-
-
-measure = _drops.measure
+tasks, measure = _drops.tasks_of(setups), _drops.measure
 
 
 def forward(steps: float, parting: str, summed: bool, e: float = E) -> Floats:
@@ -94,9 +84,7 @@ def rebound(found: Found, scheme: str, parting: str, steps: float, e: float = E)
     return np.concatenate([drop.e, np.full(drop.copies - len(drop.e), np.nan)])
 
 
-def choices(plan: Plan) -> list[dict[str, str]]:
-    """Settings, the one as shipped first."""
-    return DESIGN.settings(n_settings(plan))
+choices = DESIGN.sets
 
 
 def farthest(found: Found, chosen: Mapping[str, str], steps: Sequence[float]) -> Interval:
@@ -120,16 +108,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     words = [f"{name} {values.min():.2f} to {values.max():.2f}" for name, values in at_ten.items()]
     stable = _stable(TENSION)
     return (
-        Finding(
+        finding(
             "steps",
-            tuple(trials),
-            "Forward differences add energy to an oscillator in every step, which the dashpot must "
-            f"dissipate: with fewer than pi/(2 zeta) steps, {stable:.0f} with tension, grains separate "
-            "faster than they approached. The semi-implicit scheme, velocity first and then position, adds "
-            "none; nor does a spring force summed as in Eq. (1), which is one step ahead of the overlap, "
-            f"unless the dashpot may pull. At ten steps e is: {', '.join(words)}.",
-            {"k_n": "100 N/cm", "fewest steps": "5; the case reader refuses fewer"},
-            also=tuple(_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)),
+            trials,
+            also=[_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)],
+            stable=stable,
+            words=", ".join(words),
         ),
     )
 

@@ -12,30 +12,7 @@ from ryusa.study.registration import Registration
 from ryusa_studies.osada2004._parts import NAMES
 from ryusa_studies.osada2004.by_level import tables
 from ryusa_studies.osada2004.claims import CLAIMS
-from ryusa_studies.osada2004.paper import CITATION
-
-# What the paper left open, and the claims whose runs answer it.
-QUESTIONS = (
-    (
-        "Debris flow in a river",
-        "question-debris-flow",
-        "The paper's open question i: flow and deposition of a debris flow at the scale of a real river.",
-        ("debris-river", "debris-river-time"),
-    ),
-    (
-        "Rolling friction",
-        "question-rolling-friction",
-        "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
-        ("eq13", "rolling-friction", "rolling-blind"),
-    ),
-    (
-        "Water torque",
-        "question-water-torque",
-        "The paper's open question iii: the torque of the water on a spinning grain. What it does to the bed "
-        "shear in our runs is no explanation of Fig. 20, whose run had no such torque.",
-        ("water-torque", "water-torque-half", "water-torque-shear"),
-    ),
-)
+from ryusa_studies.osada2004.paper import CITATION, QUESTIONS
 
 # Words for what is no claim: the paper supposes it, or proposes it.
 OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
@@ -129,9 +106,9 @@ class PaperStudy(Study):
             "choices": tables(findings),
             "unjudged": [one for name, one in REGISTRATION.claims.items() if name not in CLAIMS],
             "questions": [
-                (title, anchor, about, answers)
-                for title, anchor, about, ids in QUESTIONS
-                if (answers := [here[one] for one in ids if one in here])
+                (one["title"], one["anchor"], one["about"], answers)
+                for one in QUESTIONS
+                if (answers := [here[claim] for claim in one["claims"] if claim in here])
             ],
         }
 

@@ -8,15 +8,13 @@ from matplotlib.figure import Figure
 from ryusa.results import Results
 from ryusa.study import Finding, over_seeds
 from ryusa_studies.osada2004 import _saltation, fig21
+from ryusa_studies.osada2004._findings import finding
 from ryusa_studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa_studies.osada2004._saltation import (
     FREE,
-    HOPS,
     LOCKED,
-    MANY,
     RE,
     SHIPPED,
-    STIFF,
     TORQUE,
     SaltationRun,
     mean,
@@ -111,54 +109,37 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             [_shear(found, plan, one, name) for one in sets],
         )
     ]
-    done = {"rotation": FREE, "k_n": STIFF, "starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
-    physics = (
-        "The water slows the spin between two hits, each of which turns the grain up towards rolling again. "
-        "What it removes is the torque over the moment of inertia times the time of a flight: more for "
-        "Dennis et al. than for Stokes, whose torque is that of slow spin, and more at a small Reynolds "
-        "number."
-    )
     beyond = over_seeds(
         [found[_wet(sets[0], seed)].spun.against["beyond_dennis"] for seed in plan.seeds], "-"
     )
     return (
-        Finding(
+        finding(
             "water-torque",
-            tuple(shares["water-torque"]),
-            physics,
-            settings=done,
-            readings=(EXCESS,),
+            shares["water-torque"],
             also=(
                 f"share of the time beyond the range of the torque of Dennis et al.: {beyond}",
                 *(_spins(found, plan, law) for law in LAWS),
             ),
         ),
-        Finding(
+        finding(
             "water-torque-half",
-            tuple(shares["water-torque-half"]),
-            physics,
-            settings=done,
-            readings=(EXCESS,),
-            also=tuple(
+            shares["water-torque-half"],
+            also=[
                 f"torque of {law}, as shipped, of the spin {way}: "
                 f"{over_seeds(_removed(found, plan, one, way), '-')} removed"
                 for law, one in _laws().items()
                 for way in (VORTICITY, ALL)
-            ),
+            ],
         ),
-        Finding(
+        finding(
             "water-torque-shear",
-            tuple(shears),
-            "A grain that the water has slowed slips again at its next hit, and is braked by friction. The "
-            "paper's own run had no torque of the water, so that this is no reason for the half of Fig. 20.",
-            settings={**done, "against": "rotation locked"},
-            readings=(SHEAR,),
-            also=tuple(
+            shears,
+            also=[
                 f"torque of {law}, as shipped: {way} {over_seeds(_shear(found, plan, one, name), '-')} of "
                 "that of locked grains"
                 for law, one in _laws().items()
                 for way, name in SHEARS.items()
-            ),
+            ],
         ),
     )
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.debris import (
     collision_factor,
     equilibrium_concentration,
@@ -28,19 +28,18 @@ from ryusa.study import (
     Found,
     Level,
     Plan,
-    Source,
     Task,
-    at_most,
+    Trial,
     case_run,
-    comparison,
     largest_mean,
-    misfit,
     over_seeds,
     pool_alike,
 )
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "Equilibrium of a debris flow with its slope"
+DECLARED = declared(__file__)
 # slope -> depth of water over the bed at first: flows about as deep as each other once the bed is eroded
 SLOPES = {"8 deg": "2.2 cm", "10 deg": "1.6 cm", "11 deg": "1.2 cm", "12 deg": "0.8 cm"}
 SLOW = 0.05  # of the surface's speed: there begins the bed
@@ -166,34 +165,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         f"share of the water {one['water']:.2f}"
         for one, runs in zip(wet, of_slopes, strict=True)
     )
-    settings = {
-        "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.7",
-        "runs of a slope": f"{len(seeds)}",
-    }
     return [
-        comparison(
-            "concentration", "Concentration against slope",
-            Source(
-                "Takahashi 1978; Egashira, Miyamoto & Itoh 1997: c = rho tan(slope)/((sigma - rho) "
-                "(tan(phi) - tan(slope))); after Takahashi at most 0.9 of that of the bed"
-            ),
-            Axis("slope", "deg"), Axis("concentration"), [Curve("grains", np.degrees(slope), c)],
+        DECLARED["concentration"].finding(
+            [Curve("grains", np.degrees(slope), c)],
             [Curve(f"phi = {math.degrees(phi):.1f} deg, of the dry flow", fine, _curve(fine, phi, wet))],
-            [
-                misfit(
-                    "largest relative difference",
-                    largest_mean(off, "-", pool_alike(off), absolute=True), "-",
-                    at_most(0.25, "1 deg of friction angle and half a diameter of bed height change c by "
-                                  "a tenth each"),
-                ),
-            ],
-            settings,
-            "Mean from the bed, where the speed is a twentieth of that at the surface, to the surface. In "
-            "three dimensions, because a plane scene packs only to 0.55. Dry flow: tan(phi) = "
-            f"{over_seeds(frictions, '-')}. {said}.",
-            [Curve("phi = 38 deg", fine, _curve(fine, SAND, wet))],
+            {"difference": largest_mean(off, "-", pool_alike(off), absolute=True)},
+            [Curve("phi = 38 deg", fine, _curve(fine, SAND, wet))], runs=len(seeds),
+            frictions=over_seeds(frictions, "-"), said=said,
         ),
-        _velocity(wet, phi, settings),
+        _velocity(wet, phi, len(seeds)),
     ]  # fmt: skip
 
 
@@ -206,11 +186,11 @@ def _mean(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {**numbers, "z": z[reached], "u": profile[reached]}
 
 
-def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str]) -> Finding:
+def _velocity(wet: Sequence[dict[str, Any]], phi: float, runs: int) -> Finding:
     """Speed of the water over height, beside the law of a uniform mixture."""
     ours: list[Curve] = []
     theirs: list[Curve] = []
-    ratios: list[float] = []
+    numbers: list[Trial] = []
     for one in wet:
         name = f"{math.degrees(one['slope']):.0f} deg"
         z, u = one["z"], one["u"]
@@ -223,22 +203,9 @@ def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str
         ]
         ours.append(Curve(name, u, z))
         theirs.append(Curve(name, np.array(law), z))
-        ratios.append(float(u[-1]) / law[-1] if law[-1] > 0.0 else math.nan)
-    return comparison(
-        "velocity", "Speed over height",
-        Source(
-            "Egashira, Miyamoto & Itoh 1997, integrated: U = (2/3) K (h^1.5 - (h - z)^1.5), the same "
-            "concentration over the depth"
-        ),
-        Axis("speed of the water", "m/s"), Axis("height above the bed over d"), ours, theirs,
-        [
-            misfit(f"surface speed over that of the law, {line.name}", ratio)
-            for line, ratio in zip(ours, ratios, strict=True)
-        ],
-        settings,
-        "Shown for comparison only: the concentration of the flow decreases upwards, while the law has "
-        "that of the formula over the whole depth.",
-    )  # fmt: skip
+        ratio = float(u[-1]) / law[-1] if law[-1] > 0.0 else math.nan
+        numbers.append(DECLARED["velocity"].trial("surface", ratio, name))
+    return DECLARED["velocity"].finding(ours, theirs, numbers, runs=runs)
 
 
 def _curve(slopes: Floats, phi: float, wet: Sequence[dict[str, Any]]) -> Floats:

@@ -2,33 +2,26 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
 
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure import profiles, transport
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
 from ryusa.study import (
-    Band,
     CaseRun,
     Finding,
     Found,
     Interval,
-    Known,
     Level,
     Plan,
-    Source,
     Task,
-    Trial,
-    at_most,
     case_run,
-    comparison,
     correlation_time,
-    misfit,
     not_negative,
     over_seeds,
     pseudo_values,
@@ -36,6 +29,7 @@ from ryusa.study import (
     share_over_runs,
     transformed,
 )
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "Bed load in a narrow flume"
@@ -47,10 +41,7 @@ SETTLE = {Level.STANDARD: 15.0, Level.FULL: 25.0}  # left out: a run begins with
 BEADS = 50  # in the length of our cell
 SECOND = 1.0  # over which a rate is averaged to tell rest from motion [s]
 REST = 0.01  # of the flume's rate: a single bead in motion carries ten times that
-SOURCE = Source(
-    "Frey 2014, profiles as digitised in YADE's validation of Maurin, Chauchat, Chareyre & Frey 2015",
-    Known.QUOTED,
-)
+DECLARED = declared(__file__)
 
 
 @dataclass(frozen=True)
@@ -291,46 +282,25 @@ def _compare(
     z_ours, phi_ours, u_ours = pooled_profile(runs)
     q_flume = rate(z, phi, u)
     z_water, u_water = pooled_water(runs)
-    settings = {
-        "set": choice.words,
-        "runs": f"{len(runs)}, each averaged over {rates.time:.0f} s",
-        "q_star of the flume": f"{q_flume:.3f}",
-        "water at the surface": f"{float(u_water[-1]):.2f} m/s",
-        "rate correlated over": _correlated(rates),
-    }
-    said = choice.said + " q_star of single runs over that of the flume: "
-    said += ", ".join(f"{one:.2g}" for one in rates.single) + "."
-    shown = [misfit("share of the time at rest", rates.rest)]
+    words = {
+        "set": choice.words, "runs": len(runs), "time": rates.time, "q": q_flume,
+        "u": float(u_water[-1]), "correlated": _correlated(rates), "name": name, "run": run,
+        "said": choice.said, "single": ", ".join(f"{one:.2g}" for one in rates.single),
+        "rests": "",
+    }  # fmt: skip
     if rates.moving is not None:
-        shown.append(misfit("q_star while in motion over that of the flume", rates.moving))
-        said += " " + RESTS.format(times=1000.0 * 70.0 / (BEADS * rates.time * len(runs)))
+        words["rests"] = " " + RESTS.format(times=1000.0 * 70.0 / (BEADS * rates.time * len(runs)))
+    shown = {"rest": rates.rest, "moving": rates.moving}
     window = (z_ours >= LOW - 1.0) & (z_ours <= float(z.max()))
-    height = Axis("height over the base over d")
     water = [Curve("water", z_water, u_water)]
     return [
-        comparison(
-            f"{name}-{run}-phi", f"Run {run}, {choice.words}: concentration", SOURCE, height, Axis("phi"),
+        DECLARED["{name}-{run}-phi"].finding(
             [Curve("beads", z_ours[window], phi_ours[window])], [Curve(f"Frey, run {run}", z, phi)],
-            [
-                misfit(
-                    "q_star over that of the flume", rates.mean, "-",
-                    Band(0.7, 1.3, "-", "the code that was fitted to this flume agrees within 30 %"),
-                ),
-                misfit("rms of phi", rms(runs, flume, 1), "-", at_most(0.05, "a tenth of the concentration "
-                                                                             "of a packed bed")),
-                *shown,
-            ],
-            settings, said,
+            {"q_star": rates.mean, "rms": rms(runs, flume, 1), **shown}, **words,
         ),
-        comparison(
-            f"{name}-{run}-u", f"Run {run}, {choice.words}: speed", SOURCE, height, Axis("speed", "m/s"),
+        DECLARED["{name}-{run}-u"].finding(
             [Curve("beads", z_ours[window], u_ours[window])], [Curve(f"Frey, run {run}", z, u)],
-            [
-                misfit("rms of u", rms(runs, flume, 2), "m/s", at_most(0.05, "a tenth of the speed of the "
-                                                                             "water")),
-                *shown,
-            ],
-            settings, said, water,
+            {"rms": rms(runs, flume, 2), **shown}, water, **words,
         ),
     ]  # fmt: skip
 
@@ -347,24 +317,15 @@ def _side_walls(choices: Mapping[str, Choice], rates: Mapping[tuple[str, int], F
     """Distance between the side walls at which the rate is that of the flume."""
     widths = np.array([one.walls for one in choices.values()])
     each = {run: [rates[name, run].mean for name in choices] for run in FLUME}
-    axis = Axis("distance between the side walls", "mm", log=True)
-    return comparison(
-        "side-walls", "Side walls that give the measured rate", SOURCE, axis,
-        Axis("q_star over that of the flume"),
+    fits = {run: matching(widths, some) for run, some in each.items()}
+    return DECLARED["side-walls"].finding(
         [Curve(f"run {run}", widths, np.array([one.value for one in some])) for run, some in each.items()],
         [Curve("flume", widths, np.ones(len(widths)))],
         [
-            Trial(
-                f"run {run}: distance at which the rate is that measured", {}, fits, None, note=_bracket(fits)
-            )
-            for run, some in each.items()
-            for fits in [matching(widths, some)]
+            replace(DECLARED["side-walls"].trial("distance", one, run), note=_bracket(one))
+            for run, one in fits.items()
         ],
-        {"walls": "Blasius friction", "distances": ", ".join(f"{one:g} mm" for one in widths)},
-        "The channel is 6.5 mm wide. The interval lies between the largest distance at which the rate is "
-        "below that measured with 95 % and the smallest at which it is above; it assumes only that walls "
-        "farther apart slow the water less. The number in it is interpolated. `ryusa validate --full frey` "
-        "has more distances.",
+        distances=", ".join(f"{one:g} mm" for one in widths),
     )  # fmt: skip
 
 

@@ -7,27 +7,17 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
 from ryusa.model.arrays import Floats
 from ryusa.model.scene import EventRule
-from ryusa.study import (
-    Finding,
-    Found,
-    Level,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    largest_mean,
-    misfit,
-)
+from ryusa.study import Finding, Found, Level, Plan, Task, at_most, calculation, largest_mean, misfit
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "A granular gas cools"
+DECLARED = declared(__file__)
 E, PHI = 0.9, 0.02
 # Of the first lattice, 2450 grains; the box is periodic along and across, floor and lid stop z.
 WIDE, HIGH = 7, 50
@@ -92,24 +82,17 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     t, hot = (np.mean([one[key] for one in every], axis=0) for key in ("t", "T"))
     off = [1.0 / float(np.polyfit(one["t"], 1.0 / np.sqrt(one["T"]), 1)[0]) - 1.0 for one in every]
     return [
-        comparison(
-            "haff", "Temperature of a freely cooling gas",
-            Source(
-                "Haff 1983, T = T_0/(1 + t/tau_0)^2; rate of Enskog's theory (van Noije & Ernst 1998) "
-                "with Carnahan & Starling's chi, and the loss at floor and lid"
-            ),
-            Axis("time over tau_0"), Axis("T/T_0"), [Curve("2450 grains", t, hot)],
-            [Curve("Haff", t, (1.0 + t) ** -2.0)],
-            [
-                misfit(
+        DECLARED["haff"].finding(
+            [Curve("2450 grains", t, hot)], [Curve("Haff", t, (1.0 + t) ** -2.0)],
+            {
+                "tau_0": misfit(
                     "tau_0 over that of theory, less 1", largest_mean([off], "-", absolute=True), "-",
                     at_most(
                         0.15 if plan.level is Level.QUICK else 0.03,
                         "statistics of collisions, and finite contact times",
                     ),
-                )
-            ],
-            {"e": "0.9", "phi": "0.02", "friction": "none", "gases": f"{len(every)}"},
-            "Single gases: " + ", ".join(f"{100.0 * one:+.1f} %" for one in off) + ".",
+                ),
+            },
+            gases=len(every), single=", ".join(f"{100.0 * one:+.1f} %" for one in off),
         )
     ]  # fmt: skip

@@ -7,31 +7,18 @@ import numpy as np
 
 from ryusa.build import Material, scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import DampingLaw, Slip, Unloading
 from ryusa.model.arrays import Floats
 from ryusa.model.contact_law import contact_time_of, elastic_spheres
-from ryusa.study import (
-    Finding,
-    Found,
-    Known,
-    Level,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.hertz_oblique import (
     DASHPOTS,
     E_6,
-    FINE,
     LARGE,
     MATERIALS,
     MU_6,
-    READ,
     SLIDES_6,
     SLOW,
     STEPS,
@@ -39,18 +26,12 @@ from ryusa_studies.validation.hertz_oblique import (
 )
 
 TITLE = "Impact of two elastic spheres that spin"
+DECLARED = declared(__file__)
 YOUNG, NU, RHO = MATERIALS["aluminium alloy"]
 R, SPEED, MU, E = LARGE, SLOW, MU_6, E_6  # of test 6: radius [m], speed [m/s], friction, restitution
 SPINS = (0.175, 0.6, 2.0, 6.0, 21.0)  # of both spheres, opposite to each other, test 7 [rad/s]
 LARGER, HEAVIER = 5.0, 1000.0  # radius and density of the second sphere of test 8, over those of the first
-
-# Test 8, case B, both spheres of one modulus, as digitised: q = 3.5 mu (1 + e) v_n/v_t and the tangential
-# restitution beta of the contact point
-BETA = (
-    (0.187, -0.815), (0.358, -0.626), (0.551, -0.439), (0.765, -0.238), (0.979, -0.017), (1.214, 0.096),
-    (1.492, 0.111), (1.77, 0.09), (2.091, 0.058), (2.519, 0.006), (2.989, -0.049), (3.631, -0.103),
-    (4.508, -0.139), (5.77, -0.162), (7.845, -0.106), (11.909, -0.108), (23.995, -0.106),
-)  # fmt: skip
+BETA = DECLARED["two-spheres"].points["B"]  # test 8, case B
 
 
 def test_7() -> dict[str, Floats]:
@@ -69,7 +50,7 @@ def test_7() -> dict[str, Floats]:
 def test_8(dashpot: str, damping_law: str) -> dict[str, Floats]:
     """Tangential restitution `beta` of the contact point at the abscissae of BETA [-]."""
     beta: list[float] = []
-    for q, _ in BETA:
+    for q in BETA[:, 0].tolist():
         v_t = 3.5 * MU * (1.0 + E) * SPEED / q
         spins = (-v_t / R, 0.0)
         (v, w), _second = _impact(LARGER, HEAVIER, 0.0, spins, dashpot, DampingLaw.of(damping_law))
@@ -128,51 +109,23 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 def _gears(found: Found) -> Finding:
     ours, spins, none = found[_test_7()], np.array(SPINS), np.zeros(len(SPINS))
-    exact = at_most(1e-9, "their surfaces do not move on each other: round-off")
-    return comparison(
-        "gears", "Two equal spheres that spin against each other",
-        Source("Chung & Ooi 2011, test 7; symmetry"),
-        Axis("spin before the impact", "rad/s"), Axis("over the speed of the surface"),
-        [Curve("velocity along the contact", spins, ours["along"])],
-        [Curve("none", spins, none)],
-        [
-            misfit("velocity along the contact, over that of the surface", ours["along"].max(), "-", exact),
-            misfit("change of spin, over the spin", ours["kept"].max(), "-", exact),
-        ],
-        {"e": "0.5", "mu": "0.4", "speed of each": "0.2 m/s", "radius": "0.1 m"},
+    return DECLARED["gears"].finding(
+        [Curve("velocity along the contact", spins, ours["along"])], [Curve("none", spins, none)],
+        {"along": ours["along"].max(), "spin": ours["kept"].max()},
     )  # fmt: skip
 
 
 def _tangential_restitution(found: Found) -> Finding:
-    q, read = np.array(BETA).T
+    q, read = BETA.T
     slides, sticks = q < SLIDES_6, q > SLIDES_6
     ours = {one: found[_test_8(one, DampingLaw.THORNTON)]["beta"] for one in DASHPOTS}
     pulls = {one: found[_test_8(one, DampingLaw.TSUJI)]["beta"] for one in DASHPOTS}
     closed = max(float(np.abs(one - (q - 1.0))[slides].max()) for one in ours.values())
     digitised = max(float(np.abs(one - read)[slides].max()) for one in ours.values())
-    return comparison(
-        "two-spheres", "Tangential restitution of a spinning sphere that meets a larger, heavier one",
-        Source(
-            "Chung & Ooi 2011, test 8 (B), as digitised in KratosMultiphysics; gross sliding in closed form",
-            Known.QUOTED,
-        ),
-        Axis("3.5 mu (1 + e) v_n/v_t"), Axis("tangential restitution of the contact point"),
-        [Curve(f"{one} dashpot, Tsuji", q, pulls[one]) for one in DASHPOTS],
-        [Curve("Chung & Ooi", q, read)],
-        [
-            misfit("sliding branch, closed form q - 1", closed, "-", at_most(0.02, FINE)),
-            misfit("sliding branch, test 8", digitised, "-", at_most(0.03, READ)),
-            *(
-                misfit(
-                    f"sticking branch, test 8, {one} dashpot", float(np.abs(pulls[one] - read)[sticks].max()),
-                    "-", at_most(0.1, "as recoil-inelastic") if one == "with" else None,
-                )
-                for one in DASHPOTS
-            ),
-        ],
-        {"e": "0.5", "mu": "0.4", "speed": "0.2 m/s", "radii": "0.1, 0.5 m", "second": "1000 times as dense"},
-        "Missed by 0.03 at q of 6, where contacts slide and stick in turn; the shape is that of the source, "
-        "which does not print its tangential dashpot: ours is that of EDEM and LIGGGHTS. Case A, whose "
-        "second sphere is a thousand times stiffer in shear alone, is no isotropic elastic body and is not "
-        "run.",
+    return DECLARED["two-spheres"].finding(
+        [Curve(f"{one} dashpot, Tsuji", q, pulls[one]) for one in DASHPOTS], [Curve("Chung & Ooi", q, read)],
+        {
+            "slides": closed, "slides-read": digitised,
+            **{one: float(np.abs(pulls[one] - read)[sticks].max()) for one in DASHPOTS},
+        },
     )  # fmt: skip

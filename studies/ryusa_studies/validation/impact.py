@@ -7,25 +7,16 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws import collision
 from ryusa.laws.families import Cap, ContactTiming, Slip
 from ryusa.model import ContactLaw
 from ryusa.model.arrays import Floats
-from ryusa.study import (
-    Finding,
-    Found,
-    Known,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
 
 TITLE = "Impact of a grain"
+DECLARED = declared(__file__)
 ASKED = (0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
 FEW, MANY, MORE = 8.0, 50.0, 500.0  # steps to a contact: with exact timing, and twice at steps
 PHASES = 20  # of the step at which the grains first touch
@@ -127,7 +118,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     return [_restitution(found), _duration(found), *_test_4(found)]
 
 
-ROUND_OFF = "asked beforehand; the map of a contact is the oscillator"
 NAMED = {False: "force never pulls", True: "dashpot may pull"}
 
 
@@ -137,34 +127,16 @@ def _restitution(found: Found) -> Finding:
         return float(max(abs(one.mean()) if mean else np.abs(one).max() for one in every))
 
     asked = np.array(ASKED)
-    return comparison(
-        "restitution", "Restitution of the case and of the runs",
-        Source(
-            "damped oscillator, exp(-pi zeta/sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, "
-            "eq. 21"
-        ),
-        Axis("restitution asked"), Axis("restitution got"),
+    return DECLARED["restitution"].finding(
         [
             Curve(f"{words}, 50 steps a contact", asked, _mean(found, "e", tension, MANY))
             for tension, words in NAMED.items()
         ],
         [Curve("as asked", np.array([0.0, 1.0]), np.array([0.0, 1.0]))],
-        [
-            misfit("worst phase, exact timing, 8 steps", worst(FEW, False), "-", at_most(1e-3, ROUND_OFF)),
-            misfit(
-                "mean over 20 phases of first touch, 50 steps", worst(MANY, True), "-",
-                at_most(2e-3, "1/50^2, and more with strong damping"),
-            ),
-            misfit(
-                "worst phase, 50 steps", worst(MANY, False), "-",
-                at_most(1.5e-2, "the dashpot force is discontinuous at first touch: first order"),
-            ),
-            misfit(
-                "worst phase, 500 steps", worst(MORE, False), "-",
-                at_most(1.5e-3, "a tenth of the value at 50 steps"),
-            ),
-        ],
-        {"d": "2 mm", "k_n": "1e4 N/m", "speed": "0.5 m/s"},
+        {
+            "exact": worst(FEW, False), "mean": worst(MANY, True), "steps-50": worst(MANY, False),
+            "steps-500": worst(MORE, False),
+        },
     )  # fmt: skip
 
 
@@ -176,27 +148,10 @@ def _duration(found: Found) -> Finding:
     asked = np.array(ASKED)
     every = {(t, n): _mean(found, "time", t, n) for t in NAMED for n in (FEW, MANY, MORE)}
     worst = {n: max(float(np.abs(every[t, n] - 1.0).max()) for t in NAMED) for n in (FEW, MANY, MORE)}
-    return comparison(
-        "contact-time", "Contact time over that of the damped oscillator",
-        Source("pi/(omega_0 sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, eq. 21"),
-        Axis("restitution asked"), Axis("contact time over closed form"),
+    return DECLARED["contact-time"].finding(
         [Curve(f"{NAMED[t]}, {n:g} steps a contact", asked, times) for (t, n), times in every.items()],
         [Curve("closed form", asked, np.ones(len(asked)))],
-        [
-            misfit(
-                "largest relative difference, exact timing, 8 steps", worst[FEW], "-",
-                at_most(1e-3, ROUND_OFF),
-            ),
-            misfit(
-                "largest relative difference, 50 steps", worst[MANY], "-",
-                at_most(0.05, "the dashpot acts on the velocity of half a step before: zeta omega_0 dt"),
-            ),
-            misfit(
-                "largest relative difference, 500 steps", worst[MORE], "-",
-                at_most(0.005, "a tenth of the value at 50 steps"),
-            ),
-        ],
-        {"d": "2 mm", "k_n": "1e4 N/m"},
+        {"exact": worst[FEW], "steps-50": worst[MANY], "steps-500": worst[MORE]},
     )  # fmt: skip
 
 
@@ -205,36 +160,16 @@ def _test_4(found: Found) -> Sequence[Finding]:
     angle = np.array(ANGLES)
     law = sliding(angle)
     fine = np.linspace(LIMIT + 0.1, 89.0, 80)
-    kinds = (
-        ("e_t", "tangential restitution e_t", "-", 0.02),
-        ("spin", "spin", "rad/s", 0.02),
-        ("leaves", "rebound angle of the contact point", "deg", 2.0),
-    )
     made: list[Finding] = []
-    for k, (key, words, unit, read) in enumerate(kinds):
+    for k, key in enumerate(("e_t", "spin", "leaves")):
         table = np.array([TEST_4[one][k] for one in ANGLES])
-        off = np.abs(ours[key] - law[k]).max() / (1.0 if key == "leaves" else np.abs(law[k]).max())
-        far = np.abs(ours[key] - table).max() / (1.0 if key == "leaves" else np.abs(table).max())
-        what = "largest difference" if key == "leaves" else "largest difference over the largest value"
-        said = unit if key == "leaves" else "-"
-        made.append(comparison(
-            f"oblique-{key.replace('_', '-')}", f"Oblique impact, sliding branch: {words}",
-            Source(
-                "gross sliding: e_t = 1 - mu (1 + e)/tan(theta); Chung & Ooi 2011, test 4, aluminium oxide "
-                "after Kharaz et al., as digitised in KratosMultiphysics", Known.QUOTED,
-            ),
-            Axis("angle of impact from the normal", "deg"), Axis(words, unit),
+        largest = (1.0, 1.0) if key == "leaves" else (np.abs(law[k]).max(), np.abs(table).max())
+        made.append(DECLARED[f"oblique-{key.replace('_', '-')}"].finding(
             [Curve("linear spring, 400 steps a contact", angle, ours[key])],
             [Curve("gross sliding", fine, sliding(fine)[k]), Curve("Chung & Ooi, test 4", angle, table)],
-            [
-                misfit(
-                    f"{what}, closed form", float(off), said,
-                    at_most(0.2 if key == "leaves" else 5e-3, "1/400, and the error of the first step"),
-                ),
-                misfit(f"{what}, test 4", float(far), said, at_most(read, "accuracy of a digitised curve")),
-            ],
-            {"radius": "2.5 mm", "speed": "3.9 m/s", "e": "0.98", "mu": "0.092", "slip": "total"},
-            "Below 32.5 deg the table holds for a contact after Hertz and Mindlin, which a linear spring "
-            "does not reproduce.",
+            {
+                "closed": float(np.abs(ours[key] - law[k]).max() / largest[0]),
+                "read": float(np.abs(ours[key] - table).max() / largest[1]),
+            },
         ))  # fmt: skip
     return made

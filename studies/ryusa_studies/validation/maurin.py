@@ -7,41 +7,23 @@ from io import StringIO
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure import profiles, transport
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import (
-    Band,
-    CaseRun,
-    Finding,
-    Found,
-    Interval,
-    Known,
-    Level,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    case_run,
-    comparison,
-    misfit,
-    over_seeds,
-)
+from ryusa.study import CaseRun, Finding, Found, Interval, Level, Plan, Task, case_run
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.frey import Measured, Profile, pooled_profile, rms
 from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "Bed load over a wide bed"
+DECLARED = declared(__file__)
 D, EXCESS, G = 6.0e-3, 1.5, 9.81  # of the case file [m], [-], [m/s2]
 SURFACE = 27.5  # height of the water over the base [d]
 LAYER = 1.0 / 12.0  # of our profiles [d]
 TOP = 0.3  # concentration at the height from which profiles are counted: the bases are not the same
 BELOW = 4.0  # depth from which profiles are compared [d]
 SCALE = math.sqrt(EXCESS * G * D**3)
-SOURCE = Source(
-    "Maurin, Chauchat & Frey 2016 (J. Fluid Mech. 804, 490), run r2d6s2, YADE, as given with a later study",
-    Known.QUOTED,
-)
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
@@ -107,32 +89,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     z, phi, u = _pooled(runs)
     z_ref, phi_ref, u_ref = _from_top(*theirs)
     window = (z >= -BELOW - 1.0) & (z <= float(z_ref.max()))
-    settings = {
-        "runs": f"{len(runs)}, each averaged over {float(runs[0]['time']):.0f} s",
-        "published": f"q_star {q:.2f}, water {SURFACE - top(*theirs[:2]):.2f} d over the bed",
-    }
-    depth = over_seeds([float(one["depth"]) for one in runs], "d")
-    height = Axis("height over the top of the bed over d")
+    said = {
+        "runs": len(runs), "time": float(runs[0]["time"]), "q": q, "depth": SURFACE - top(*theirs[:2]),
+    }  # fmt: skip
     return [
-        comparison(
-            "phi", "Concentration and transport rate", SOURCE, height, Axis("phi"),
+        DECLARED["phi"].finding(
             [Curve("ryusa", z[window], phi[window])], [Curve("r2d6s2", z_ref, phi_ref)],
-            [
-                misfit(
-                    "q_star over that published", over_seeds([float(one["q_star"]) / q for one in runs], "-"),
-                    "-", Band(0.9, 1.1, "-", "two codes with the same laws, 10 %"),
-                ),
-                misfit("rms of phi", _rms(runs, 1), "-", at_most(0.05, "a tenth of the concentration of a "
-                                                                      "packed bed")),
-                misfit("depth of the water over the bed", depth),
-            ],
-            settings,
+            {
+                "q_star": [float(one["q_star"]) / q for one in runs], "rms": _rms(runs, 1),
+                "depth": [float(one["depth"]) for one in runs],
+            },
+            **said,
         ),
-        comparison(
-            "u", "Speed of the beads", SOURCE, height, Axis("speed", "m/s"),
-            [Curve("ryusa", z[window], u[window])], [Curve("r2d6s2", z_ref, u_ref)],
-            [misfit("rms of u", _rms(runs, 2), "m/s", at_most(0.1, "a twentieth of the speed of the water at "
-                                                                  "its surface"))],
-            settings,
+        DECLARED["u"].finding(
+            [Curve("ryusa", z[window], u[window])], [Curve("r2d6s2", z_ref, u_ref)], {"rms": _rms(runs, 2)},
+            **said,
         ),
     ]  # fmt: skip

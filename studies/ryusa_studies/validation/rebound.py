@@ -9,24 +9,15 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.engine.protocol import Engine
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.model import Water
 from ryusa.model.arrays import Floats
-from ryusa.study import (
-    Finding,
-    Found,
-    Known,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
 
 TITLE = "Impact of a grain under water"
+DECLARED = declared(__file__)
 D, DENSITY, NU, RHO, C_M = 2.0e-3, 2650.0, 1.0e-6, 1000.0, 0.5  # [m], [kg/m3], [m2/s], [kg/m3], [-]
 E_DRY, LEAST, ST_C, ROUGH = 0.9, 0.01, 35.0, 2.0e-5  # [-], [-], [-], [m]
 REACH, GAP = 0.2 * D, 1.0e-6  # of a film, and between grains about to touch [m]
@@ -135,18 +126,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 
 DENSE = np.geomspace(4.5, 1200.0, 120)
-STOKES = Axis("Stokes number of the approach", log=True)
-SOURCES = {
-    "exponential": Source(
-        "Legendre et al. 2005, 2006: e = e_dry exp(-35/St), as in TrioCFD and LIGGGHTS", Known.QUOTED
-    ),
-    "Davis": Source("Barnocky & Davis 1988, as in YADE: e = e_dry (1 + ln(2 roughness/d)/St)", Known.QUOTED),
-}
-SETTINGS = {
-    "e_dry": f"{E_DRY:g}", "d": "2 mm", "k_n": "1e4 N/m", "least": f"{LEAST:g}",
-    "St": "m speed/(6 pi mu r^2), reduced mass and radius, with added mass",
-}  # fmt: skip
-ROUGHNESS = {"roughness": f"{1e6 * ROUGH:g} um"}
 
 
 def _law(found: Found, name: str) -> Finding:
@@ -154,48 +133,19 @@ def _law(found: Found, name: str) -> Finding:
     law = asked(name, st)
     off = {n: np.array([found[_bounce(name, one, n)]["e"] - law for one in PARTNERS]) for n in (COARSE, FINE)}
     worst = {n: float(np.abs(each / law)[:, law >= MUCH].max()) for n, each in off.items()}
-    return comparison(
-        name.lower(), f"Rebound '{name}': restitution of the law and of the runs", SOURCES[name],
-        STOKES, Axis("restitution"),
+    return DECLARED[name.lower()].finding(
         [Curve(f"{one}, {FINE:g} steps", st, found[_bounce(name, one, FINE)]["e"]) for one in PARTNERS],
         [Curve("as asked", DENSE, asked(name, DENSE))],
-        [
-            misfit(
-                "largest difference, 300 steps per dry contact", float(np.abs(off[FINE]).max()), "-",
-                at_most(2e-3, "the dashpot force is discontinuous at first touch: first order in the step"),
-            ),
-            misfit(
-                "the same, relative, where it is 0.1 or more", worst[FINE], "-",
-                at_most(
-                    0.02, "a dashpot stronger than that of a dry contact, and so fewer steps per contact"
-                ),
-            ),
-            misfit(
-                "the same at 50 steps", worst[COARSE], "-", at_most(0.08, "a time step six times as long")
-            ),
-        ],
-        SETTINGS | (ROUGHNESS if name == "Davis" else {}),
+        {"difference": float(np.abs(off[FINE]).max()), "relative": worst[FINE], "coarse": worst[COARSE]},
     )  # fmt: skip
 
 
 def _films(found: Found) -> Finding:
     st = np.array(ASKED)
     got = {one: found[_film(one)]["e"] for one in PARTNERS}
-    return comparison(
-        "film", "Film 'lubrication': speed after over speed before the film",
-        Source(
-            "6 pi mu r^2 closing (1/(gap + roughness) - 1/(reach + roughness)) integrated over the gap, in "
-            "and out, with e_dry between"
-        ),
-        STOKES, Axis("speed out over speed in"),
+    return DECLARED["film"].finding(
         [Curve(one, st, e) for one, e in got.items()], [Curve("closed form", DENSE, through(DENSE))],
-        [
-            misfit(
-                "largest difference", max(float(np.abs(e - through(st)).max()) for e in got.values()), "-",
-                at_most(2e-3, "that of a dry contact at 300 steps"),
-            )
-        ],
-        SETTINGS | ROUGHNESS | {"reach": "0.2 d", "steps": "300 per dry contact"},
+        {"difference": max(float(np.abs(e - through(st)).max()) for e in got.values())},
     )  # fmt: skip
 
 
@@ -203,27 +153,15 @@ def _trend(found: Found) -> Finding:
     st, ends = np.array(ASKED), 10.0
     got = {f"rebound '{name}'": found[_bounce(name, "wall", FINE)]["e"] for name in LAWS}
     got["film 'lubrication'"] = found[_film("wall")]["e"]
-    return comparison(
-        "trend", "Restitution over that in air, against a wall",
-        Source(
-            "Gondret, Lance & Petit 2002: no rebound below St of about 10, that in air at large St",
-            Known.MEMORY,
-        ),
-        STOKES, Axis("restitution over that in air"),
+    return DECLARED["trend"].finding(
         [Curve(name, st, e / E_DRY) for name, e in got.items()],
         [
             Curve("none below about 10", np.array([st[0], ends]), np.zeros(2)),
             Curve("that in air", np.array([500.0, st[-1]]), np.ones(2)),
         ],
-        [
-            misfit(
-                f"{name}, restitution over that in air at St = {ends:g}",
-                float(np.interp(math.log(ends), np.log(st), e / E_DRY)),
-            )
-            for name, e in got.items()
-        ],
-        SETTINGS | ROUGHNESS,
-        "The exponential law was fitted to the measurements. The law of Davis includes only the loss "
-        "during approach and gives a higher restitution; a film dissipates during separation too, but is "
-        "limited by the roughness.",
+        {
+            "restitution": {
+                name: float(np.interp(math.log(ends), np.log(st), e / E_DRY)) for name, e in got.items()
+            },
+        },
     )  # fmt: skip

@@ -8,16 +8,15 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import BedKind, Drive, Mixing, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, calculation
 from ryusa.water import steady
 from ryusa.water.row import advance_row, discharges, row_at_rest
-from ryusa_studies.validation import river_bands as bands
 from ryusa_studies.validation import river_basics as basics
 from ryusa_studies.validation import river_dam as dam
 from ryusa_studies.validation import river_dam_break as over_bed
@@ -28,19 +27,19 @@ from ryusa_studies.validation import river_feeder as feeder
 from ryusa_studies.validation import river_grains as with_grains
 from ryusa_studies.validation import river_impact as impact
 from ryusa_studies.validation import river_overload as overload
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_dam_break import ritter
 
 TITLE = "A row of columns"
+DECLARED = declared(__file__)
 G = 9.80665
 WALLS = RowEnd(EndKind.WALL), RowEnd(EndKind.WALL)
 BREAK_TIME, HIGH = 0.6, 0.1  # of the dam breaks [s], [m]
 SLOPES = {"0.002": (0.072, 120.0), "0.01": (0.072, 40.0), "0.05": (0.028, 20.0)}  # depth [m], time [s]
 ACROSS = (20, 40, 80)
+SEGMENTS = (5, 10)  # of the dam break over a dry bed [mm]
 CRESTS = (1, 2, 3, 5, 10)
 DAM_HIGH, DAM_LOW, DAM_LONG, DAM_PHI = 0.12, 0.03, 0.4, 0.6
-
-X = Axis("distance", "m")
-H = Axis("depth", "m")
 
 
 def _column(depth: float, n: int, **more: object) -> Column:
@@ -182,7 +181,7 @@ STOKERS = {"0.02 m": (0.02, 1), "0.002 m": (0.002, 1), "0.02 m, 20 levels": (0.0
 
 def tasks(plan: Plan) -> Sequence[Task]:
     """All of them; the two comparisons that the row misses are left to the standard level."""
-    every = [*basics.tasks(plan), *(_break(0.0, mm, 1) for mm in bands.RITTER_DEPTH)]
+    every = [*basics.tasks(plan), *(_break(0.0, mm, 1) for mm in SEGMENTS)]
     every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
@@ -249,29 +248,18 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 
 def _ritter(found: Found) -> Finding:
-    ours, errors = list[Curve](), []
-    for mm, band in bands.RITTER_DEPTH.items():
+    ours, errors = list[Curve](), dict[int, float]()
+    for mm in SEGMENTS:
         got = found[_break(0.0, mm, 1)]
-        error = float(np.abs(got["h"] - ritter(got["x"], BREAK_TIME, HIGH)).mean() / HIGH)
-        errors.append(misfit(f"mean error over the first depth, segments of {mm} mm", error, "-", band))
+        errors[mm] = float(np.abs(got["h"] - ritter(got["x"], BREAK_TIME, HIGH)).mean() / HIGH)
         ours.append(Curve(f"segments of {mm} mm", got["x"], got["h"]))
     fine = found[_break(0.0, 5, 1)]
     front = fine["x"][fine["h"] > 0.01 * HIGH].max() / (1.7 * math.sqrt(G * HIGH) * BREAK_TIME) - 1.0
-    errors.append(
-        misfit("place of a hundredth of the depth, 5 mm", abs(float(front)), "-", bands.RITTER_FRONT)
-    )
     x = np.linspace(-1.0, 1.5, 200)
-    words = Source("Ritter 1892: h = (2 sqrt(g h0) - x/t)^2/(9 g)")
-    return comparison(
-        "ritter",
-        "Dam break over a dry bed",
-        words,
-        X,
-        H,
-        ours,
-        [Curve("closed form", x, ritter(x, BREAK_TIME, HIGH))],
-        errors,
-    )
+    return DECLARED["ritter"].finding(
+        ours, [Curve("closed form", x, ritter(x, BREAK_TIME, HIGH))],
+        {"depth": errors, "front": abs(float(front))},
+    )  # fmt: skip
 
 
 def _stoker(found: Found, name: str) -> Finding:
@@ -284,45 +272,36 @@ def _stoker(found: Found, name: str) -> Finding:
     speed = float((got["q"] / between)[flat].mean())
     i = int(np.flatnonzero(got["h"] > 0.5 * (h + ahead)).max())
     place = float(got["x"][i] + 0.01 * (got["h"][i] - 0.5 * (h + ahead)) / (got["h"][i] - got["h"][i + 1]))
-    last = misfit("place of the front", abs(place - end), "m", bands.STOKER_FRONT)
-    if levels > 1:
-        last = misfit("place of the front", abs(place / end - 1.0), "-", bands.STOKER_FRONT_LEVELS)
-    one, two = bands.STOKER[name]
+    off = {"front": abs(place - end)} if levels == 1 else {"front-levels": abs(place / end - 1.0)}
     exact = Curve("closed form", np.array([start, end, end]), np.array([h, h, ahead]))
-    return comparison(
-        f"stoker-{ahead:g}-{levels}".replace(".", "-"), f"Dam break over water, {name}",
-        Source("Stoker 1957: simple wave, plateau, bore"), X, H, [Curve("row", got["x"], got["h"])], [exact],
+    kind = DECLARED["stoker-{ahead}-{levels}"]
+    return kind.finding(
+        [Curve("row", got["x"], got["h"])], [exact],
         [
-            misfit("depth of the plateau", abs(depth / h - 1.0), "-", one),
-            misfit("its speed", abs(speed / u - 1.0), "-", two),
-            last,
+            kind.trial("depth", abs(depth / h - 1.0), name), kind.trial("speed", abs(speed / u - 1.0), name),
+            *(kind.trial(*one) for one in off.items()),
         ],
+        ahead=f"{ahead:g}".replace(".", "-"), levels=levels, name=name,
         said="" if levels == 1 else "Levels that do not mix are not one layer: upper ones run ahead.",
     )  # fmt: skip
 
 
 def _uniform_flow(found: Found, slope: str) -> Finding:
-    got, (one, two) = found[_uniform(slope)], bands.UNIFORM[slope]
+    got, kind = found[_uniform(slope)], DECLARED["uniform-{name}"]
     off = float(np.abs(got["u"] - got["exact"]).max() / got["exact"][-1])
-    return comparison(
-        f"uniform-{slope.replace('.', '-')}", f"Uniform flow, slope {slope}",
-        Source("the steady flow of one column"), Axis("height", "m"), Axis("speed", "m/s"),
+    return kind.finding(
         [Curve("row", got["z"], got["u"])], [Curve("column", got["z"], got["exact"])],
-        [
-            misfit("largest difference over the speed of the surface", off, "-", one),
-            misfit("discharge", abs(float(got["q"]) - 1.0), "-", two),
-        ],
+        [kind.trial("profile", off, slope), kind.trial("discharge", abs(float(got["q"]) - 1.0), slope)],
+        name=slope.replace(".", "-"), slope=slope,
     )  # fmt: skip
 
 
 def _m1(found: Found) -> Finding:
     got = found[_backwater()]
     off = float(np.abs(got["h"] - got["exact"]).max())
-    return comparison(
-        "backwater", "Backwater before a dam",
-        Source("gradually varied flow, with friction and momentum coefficient of the column"), X, H,
+    return DECLARED["backwater"].finding(
         [Curve("row", got["x"], got["h"])], [Curve("gradually varied flow", got["x"], got["exact"])],
-        [misfit("largest difference", off, "m", bands.BACKWATER)], {"q": "0.03 m2/s", "slope": "0.005"},
+        {"difference": off},
     )  # fmt: skip
 
 
@@ -330,17 +309,14 @@ def _darcy(found: Found) -> Finding:
     conductivity = G * (1.0 - DAM_PHI) ** 3 * 1.5e-3**2 / (150.0 * 1e-6 * DAM_PHI**2)
     exact = conductivity * (DAM_HIGH**2 - DAM_LOW**2) / (2.0 * DAM_LONG)
     ours, errors = list[Curve](), []
-    for across, (one, two) in bands.DARCY.items():
+    for across in ACROSS:
         got = found[_seepage(across, False)]
         off = float(np.abs(got["h"] - dupuit(got["x"])).max() / DAM_HIGH)
-        errors.append(misfit(f"discharge, {across} segments", abs(float(got["q"]) / exact - 1.0), "-", one))
-        errors.append(misfit(f"surface over the upper depth, {across} segments", off, "-", two))
+        errors.append(DECLARED["darcy"].trial("discharge", abs(float(got["q"]) / exact - 1.0), across))
+        errors.append(DECLARED["darcy"].trial("surface", off, across))
         ours.append(Curve(f"{across} segments", got["x"], got["h"]))
     x = np.linspace(0.0, DAM_LONG, 200)
-    return comparison(
-        "darcy", "Seepage through a porous dam, Darcy", Source("Dupuit: q = K (h1^2 - h2^2)/(2 L)"), X, H,
-        ours, [Curve("Dupuit", x, dupuit(x))], errors,
-    )  # fmt: skip
+    return DECLARED["darcy"].finding(ours, [Curve("Dupuit", x, dupuit(x))], errors)
 
 
 def _ergun(found: Found) -> Finding:
@@ -354,15 +330,14 @@ def _ergun(found: Found) -> Finding:
         reach = float(np.trapezoid(1.0 / (one * q / h + two * (q / h) ** 2), h))
         low, high = (q, high) if reach > DAM_LONG else (low, q)
     q_of = np.array([float(found[_seepage(across, True)]["q"]) for across in ACROSS])
-    errors = [
-        misfit(f"discharge, {across} segments", abs(float(each) / q - 1.0), "-", bands.ERGUN[across])
-        for across, each in zip(ACROSS, q_of, strict=True)
-    ]
     n = np.array(ACROSS, dtype=np.float64)
-    return comparison(
-        "ergun", "Seepage through a porous dam, Ergun",
-        Source("L = integral of dh/(a q/h + b (q/h)^2), a and b of Ergun's law"), Axis("segments", log=True),
-        Axis("discharge", "m2/s"), [Curve("row", n, q_of)], [Curve("integral", n, np.full(3, q))], errors,
+    return DECLARED["ergun"].finding(
+        [Curve("row", n, q_of)], [Curve("integral", n, np.full(3, q))],
+        {
+            "discharge": {
+                across: abs(float(each) / q - 1.0) for across, each in zip(ACROSS, q_of, strict=True)
+            },
+        },
     )  # fmt: skip
 
 
@@ -370,18 +345,8 @@ def _weirs(found: Found, crests: Sequence[int]) -> Finding:
     critical = (2.0 / 3.0) ** 1.5
     got = np.array([float(found[_weir(crest)]["c"]) for crest in (0, *crests)])
     off = np.abs(got / critical - 1.0)
-    errors = [
-        misfit(f"crest of {crest} segments", float(each), "-", bands.WEIR[crest])
-        for crest, each in zip(crests, off[1:], strict=True)
-    ]
     n = np.array(crests, dtype=np.float64)
-    return comparison(
-        "weir", "Weirs, and a channel that ends in a drop",
-        Source("critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"), Axis("segments of 2 cm", log=True),
-        Axis("q/(sqrt(g) H^1.5)"), [Curve("row", n, got[1:])],
-        [Curve("critical", n, np.full(len(n), critical))],
-        [misfit("the channel ends in a drop", float(off[0]), "-", bands.DROP), *errors],
-        {"q": "0.03 m2/s", "height": "8 cm"},
-        "Critical flow is no law of a crest as short as one segment, over which real water also passes more; "
-        "the band is that of the prototype, whose segments may have been of another length.",
+    return DECLARED["weir"].finding(
+        [Curve("row", n, got[1:])], [Curve("critical", n, np.full(len(n), critical))],
+        {"drop": float(off[0]), "crest": dict(zip(crests, off[1:].tolist(), strict=True))},
     )  # fmt: skip

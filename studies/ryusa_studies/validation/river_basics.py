@@ -8,16 +8,18 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import BedKind, Drive, Mixing, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, WaterState
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
-from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water import advance, steady
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa.water.row_ends import with_inlet
-from ryusa_studies.validation import river_bands as bands
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 G = 9.80665
 WALLS = RowEnd(EndKind.WALL), RowEnd(EndKind.WALL)
@@ -31,7 +33,6 @@ STEEP, LONG, FLAT, TAIL, FLOW = (
     0.03,
 )  # slope break: slope, lengths and depth [m], [m2/s]
 BEFORE, BEHIND = 0.15, 0.4  # from the middle of the jump to where depths are compared [m]
-X, H, U = Axis("distance", "m"), Axis("depth", "m"), Axis("speed", "m/s")
 
 
 def _rough(depth: float, levels: int, **more: object) -> Column:
@@ -203,58 +204,46 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 
 def _at_rest(found: Found) -> Finding:
-    ours, errors = list[Curve](), []
+    ours, speeds = list[Curve](), dict[str, float]()
     for name, tilt in TILTS.items():
         for drag in (True, False):
             got = found[_still(tilt, drag)]
             words = f"frame {name}, {'with' if drag else 'without'} drag"
-            errors.append(misfit(f"largest speed, {words}", float(got["u"].max()), "m/s", bands.STILL))
+            speeds[words] = float(got["u"].max())
             ours.append(Curve(words, got["x"], got["u"]))
-    return comparison(
-        "still", "A pond over a bumpy porous bed", Source("hydrostatics: water at rest stays at rest"), X,
-        Axis("largest speed", "m/s"), ours, [Curve("at rest", ours[0].x, 0.0 * ours[0].x)], errors,
-    )  # fmt: skip
+    at_rest = Curve("at rest", ours[0].x, 0.0 * ours[0].x)
+    return DECLARED["still"].finding(ours, [at_rest], {"speed": speeds})
 
 
 def _kept(found: Found) -> Finding:
     got = found[_mass()]
     off = float(np.abs(got["volume"] - 1.0).max())
-    return comparison(
-        "mass", "Water of a row that is half dry at its start", Source("conservation of water"),
-        Axis("time", "s"), Axis("water over the first"), [Curve("row", got["t"], got["volume"])],
-        [Curve("kept", got["t"], np.ones(len(got["t"])))],
-        [misfit("largest relative difference in 10,000 steps", off, "-", bands.MASS)],
+    return DECLARED["mass"].finding(
+        [Curve("row", got["t"], got["volume"])], [Curve("kept", got["t"], np.ones(len(got["t"])))],
+        {"kept": off},
     )  # fmt: skip
 
 
 def _bitwise(found: Found) -> Finding:
-    ours, errors = list[Curve](), []
+    ours, off = list[Curve](), dict[str, float]()
     for bed in BEDS:
         for columns in (1, 8):
             got = found[_bits(bed, columns)]
             words = f"{bed}, {columns} column{'s' if columns > 1 else ''}"
-            errors.append(misfit(f"largest difference, {words}", float(got["off"]), "-", bands.SAME_BITS))
+            off[words] = float(got["off"])
             ours.append(Curve(words, got["z"], got["row"]))
     references = [
         Curve(f"one column, {bed}", got["z"], got["u"]) for bed in BEDS for got in [found[_bits(bed, 1)]]
     ]
-    return comparison(
-        "same-bits", "A period of columns is one column", Source("the step of one column, bit for bit"),
-        Axis("height", "m"), U, ours, references, errors,
-    )  # fmt: skip
+    return DECLARED["same-bits"].finding(ours, references, {"difference": off})
 
 
 def _tilted(found: Found) -> Finding:
     got = found[_inclined()]
     off = float(np.abs(got["row"] - got["own"]).max() / got["own"][-1])
-    return comparison(
-        "inclined", "Uniform flow on a bottom at 10 deg to the axis",
-        Source("the steady flow of one column whose axis lies along the bottom"), Axis("height", "m"), U,
+    return DECLARED["inclined"].finding(
         [Curve("row", got["z"], got["row"])], [Curve("column", got["z"], got["own"])],
-        [
-            misfit("largest difference over the speed of the surface", off, "-", bands.INCLINED),
-            misfit("depth", abs(float(got["depth"]) / 0.02 - 1.0), "-", bands.INCLINED),
-        ],
+        {"profile": off, "depth": abs(float(got["depth"]) / 0.02 - 1.0)},
     )  # fmt: skip
 
 
@@ -274,18 +263,7 @@ def _jump(found: Found) -> Finding:
     steep = abs(float(np.interp(0.75 * LONG, x, h)) / normal - 1.0)
     exact = np.where(flat < jump, got["before"], got["behind"])
     line = Curve("gradually varied flow, jump", flat, exact)
-    return comparison(
-        "slope-break", "A jump behind a slope break",
-        Source("gradually varied flow, with friction and momentum coefficient of the column; equal momentum"),
-        X, H, [Curve("row", x, h)], [line],
-        [
-            misfit("depth on the steep reach", steep, "-", bands.BREAK_STEEP),
-            misfit(f"depth {BEFORE:g} m before the jump", before, "-", bands.BREAK_BEFORE),
-            misfit(f"depth {BEHIND:g} m behind the jump", behind, "-", bands.BREAK_BEHIND),
-            misfit("place of the jump", abs(place - jump), "m", bands.JUMP_PLACE),
-        ],
-        {"q": f"{FLOW:g} m2/s", "slopes": f"{STEEP:g} and 0", "depth at the end": f"{TAIL:g} m"},
-        "Behind the jump the depth comes to that of the level reach over about a metre: 0.70 % below it at "
-        "0.4 m, 0.1 % at 1 m. The shift of the place is worth 2.7 % of the momentum function. The bands are "
-        "those of the prototype, whose roughness and lengths of the reaches are not known.",
+    return DECLARED["slope-break"].finding(
+        [Curve("row", x, h)], [line],
+        {"steep": steep, "before": before, "behind": behind, "place": abs(place - jump)},
     )  # fmt: skip

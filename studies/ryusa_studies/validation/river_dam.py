@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure import deposit
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, case_run, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, case_run
 from ryusa_studies.validation import river_exner as exner
+from ryusa_studies.validation.declared import declared
 
+DECLARED = declared(__file__)
 DAM, EVEN = "filling_dam", "even_bed"
 CASES = DAM, EVEN
 FEED = 0.06  # that of filling_dam.toml [kg/s]
@@ -127,12 +128,11 @@ def _judged(found: Found, dams: Dams) -> Finding:
     # tan of what the bottom falls more than the deposit; P is normal to the bottom
     fall = [math.tan(math.atan(BOTTOM) - math.atan(slope)) for slope in expected]
     volumes = [0.5 * dams.high**2 / one for one in fall]
-    errors = [misfit("grains missing", max(float(one["missing"]) for one in runs), "m2", bands.DAM_KEPT)]
+    kind = DECLARED["{name}"]
+    errors = [kind.trial("missing", max(float(one["missing"]) for one in runs))]
     for share, slope, own, one, volume in zip(dams.shares, expected, slopes, runs, volumes, strict=True):
-        name = f"feed {share:.2f}"
-        errors.append(misfit(f"slope over that of even beds, {name}", own / slope, "-", bands.DAM_SLOPE))
-        errors.append(misfit(f"volume over P^2/(2 (S_0 - S)), {name}", float(one["volume"]) / volume, "-",
-                             bands.DAM_VOLUME))  # fmt: skip
+        errors.append(kind.trial("slope", own / slope, f"{share:.2f}"))
+        errors.append(kind.trial("volume", float(one["volume"]) / volume, f"{share:.2f}"))
     names = [f"feed {share:.2f}" for share in dams.shares]
     ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, runs, strict=True)]
     x = np.linspace(0.0, FACE, 141)
@@ -147,13 +147,7 @@ def _judged(found: Found, dams: Dams) -> Finding:
     )
     beds = "; ".join(f"S {s:.4f}, q {1e4 * q:.0f}, q_s {1e4 * g:.2f} cm2/s" for s, q, g, _ in even)
     feeds = ", ".join(f"{1e4 * one:.1f}" for one in q_s)
-    return comparison(
-        dams.name, f"The deposit behind a dam of {100.0 * dams.high:.2g} cm",
-        Source("slope at which the flow over even beds carries the feed; V = P^2/(2 (S_0 - S))"),
-        Axis("distance", "m"), Axis("height of the bed over the bottom", "mm"), ours, theory, errors,
-        {
-            "case": "validation/filling_dam.toml", "q": f"{dams.discharge:g} m2/s",
-            "feeds": f"{feeds} cm2/s",
-        },
-        f"{said}. Even beds: {beds}.",
+    return kind.finding(
+        ours, theory, errors, name=dams.name, high=100.0 * dams.high, q=dams.discharge, feeds=feeds,
+        said=said, beds=beds,
     )  # fmt: skip

@@ -10,15 +10,17 @@ from numpy.typing import NDArray
 from ryusa.build import build
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure.long_section import bed_line, long_section, row_of
 from ryusa.model import State
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
-from ryusa.study import Finding, Found, Known, Level, Plan, Source, Task, calculation, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 CASE = "dam_break_bed"
 SEEDS = (1, 2)
@@ -213,22 +215,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         )
     )  # fmt: skip
     return [
-        comparison(
-            "dam-break-bed", "A dam breaks over a loose bed",
-            Source("Capart & Young 1998; Fraccarollo & Capart 2002; signs", Known.QUOTED),
-            Axis("distance from the gate", "m"), Axis("height", "cm"), ours, [closed],
-            [
-                misfit("scour at the gate in diameters, least", min(scours), "-", bands.DAM_BREAK_SCOUR),
-                misfit("rise of the surface over h_0, least", min(rises), "-", bands.DAM_BREAK_RISE),
-                misfit("concentration at the front less that at the gate, least", min(leads), "-",
-                       bands.DAM_BREAK_LEAD),
-                misfit("share of the depth at the front with moving grains, least", min(reaches), "-",
-                       bands.DAM_BREAK_REACH),
-                misfit("speed of the front over sqrt(g h_0), mean", float(np.mean(speeds))),
-                misfit("depth of what moves at the gate in diameters, mean", float(np.mean(moving))),
-            ],
-            {"case": "`validation/dam_break_bed`", "runs": f"{len(SEEDS)} seeds", "time": "5 t_0"},
-            f"By seed: {said}. Each sign is judged by the seed that shows it least.",
-            [Curve("bed at the start", x - GATE, np.full(len(x), 100.0 * BED))],
+        DECLARED["dam-break-bed"].finding(
+            ours, [closed],
+            {
+                "scour": min(scours), "rise": min(rises), "lead": min(leads), "reach": min(reaches),
+                "front": float(np.mean(speeds)), "moving": float(np.mean(moving)),
+            },
+            [Curve("bed at the start", x - GATE, np.full(len(x), 100.0 * BED))], said=said,
         )
     ]  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.debris import discharge_over_bed, equilibrium_concentration, run_out
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, long_section, row_of
@@ -14,25 +14,14 @@ from ryusa.model.arrays import Floats
 from ryusa.model.feeds import IN
 from ryusa.results import Results
 from ryusa.results.water import WaterFrames
-from ryusa.study import (
-    CaseRun,
-    Finding,
-    Found,
-    Level,
-    Plan,
-    Source,
-    Task,
-    Trial,
-    case_run,
-    comparison,
-    misfit,
-)
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, Trial, case_run
 from ryusa_studies.validation import river_grids as grids
 from ryusa_studies.validation import river_impact as impact
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.equilibrium import stopping
 
 TITLE = "Debris flows in a row of columns"
+DECLARED = declared(__file__)
 SEEDS = (1, 2)
 BED, FEED, FRICTION = "debris_bed", "debris_feed", "friction_angle"
 RHO_S, RHO_W, G = 2650.0, 1000.0, 9.80665  # of the case files [kg/m3], [m/s2]
@@ -235,15 +224,10 @@ def _growth(found: Found) -> Finding:
     )
     window = np.linspace(numbers[0]["first"], t[-1], 41)
     inner = slice(2, -3)  # whole five frames
-    return comparison(
-        "growth", "A debris flow grows over a saturated bed",
-        Source("balance of grains and water: q_T = q_0 c_star/(c_star - c)"), Axis("time", "s"),
-        Axis("water and grains that pass 0.9 m", "m2/s"),
+    return DECLARED["growth"].finding(
         [Curve("water and grains", t[inner], runs[0]["series"][inner])],
-        [Curve("balance, mean of the window", window, np.full(41, laws[0]))],
-        [misfit("discharge over that of the balance, worst seed", worst, "-", bands.DEBRIS_GROWTH)],
-        {"case": "`validation/debris_bed`", "runs": f"{len(SEEDS)} seeds", "slope": "15 deg"},
-        f"Ratios {', '.join(f'{one:.3f}' for one in ratios)}. {said}.",
+        [Curve("balance, mean of the window", window, np.full(41, laws[0]))], {"discharge": worst},
+        ratios=', '.join(f'{one:.3f}' for one in ratios), said=said,
     )  # fmt: skip
 
 
@@ -266,20 +250,11 @@ def _stop(found: Found) -> Finding:
         f"break {float(each['behind']):.2f}"
         for each, (law, _), measured in zip(runs, laws, ways, strict=True)
     )
-    return comparison(
-        "stop", "A debris flow stops behind a slope break",
-        Source("Takahashi & Yoshida 1979, derived from momentum: x_L = V^2/G, with a steady feed"),
-        Axis("time", "s"), Axis("foot of the deposit behind the break", "m"),
+    return DECLARED["stop"].finding(
         [Curve("front", one["t"], one["foot"])],
         [Curve("momentum", begin + since, way * (1.0 - (1.0 - since / time) ** 2))],
-        [
-            misfit("way over x_L, worst seed", worst, "-", bands.DEBRIS_STOP),
-            misfit("mean of the way over x_L with the speed of the grains", float(np.mean(of_grains))),
-        ],
-        {"case": "`validation/debris_feed`", "runs": f"{len(SEEDS)} seeds", "slopes": "18 deg, then 3 deg",
-         "tan(alpha)": f"{friction:.3f}, of a dry flow of the same grains that comes to rest"},
-        f"Ratios {', '.join(f'{ratio:.3f}' for ratio in ratios)}. {said}. The formula has one speed for "
-        "water and grains; water that overtakes the grains runs on and does not push them.",
+        {"way": worst, "of-grains": float(np.mean(of_grains))}, friction=friction,
+        ratios=', '.join(f'{ratio:.3f}' for ratio in ratios), said=said,
     )  # fmt: skip
 
 
@@ -295,20 +270,11 @@ def _sign(found: Found) -> Finding:
     runs = {side: found[_mixture(side)] for side in RATES}
     errors = list[Trial]()
     for side, one in runs.items():
-        of_c, of_rise = bands.DEBRIS_SIGN[side]
-        errors.append(misfit(f"rise of the bed, {side}", float(one["rise"]), "m/s", of_rise))
-        errors.append(misfit(f"c over that of equilibrium, {side}", float(one["c"]) / c_eq, "-", of_c))
+        errors.append(DECLARED["sign"].trial(f"rise-{side}", float(one["rise"])))
+        errors.append(DECLARED["sign"].trial(f"c-{side}", float(one["c"]) / c_eq))
     curves = [Curve(side, one["t"], one["series"]) for side, one in runs.items()]
     fed = ", ".join(f"{float(one['c']):.3f}" for one in runs.values())
-    return comparison(
-        "sign", "Mixtures erode a bed or raise it",
-        Source("Takahashi 1978; Egashira, Miyamoto & Itoh 1997: c of equilibrium"), Axis("time", "s"),
-        Axis("rise of the bed", "m"), curves, [], errors,
-        {"case": "`validation/debris_bed`, fed", "slope": f"{SLOPE:g} deg", "runs": "one each"},
-        f"Concentration of equilibrium {c_eq:.3f} with tan(phi) = {friction:.3f}, that of a dry flow of the "
-        f"same grains that comes to rest; fed {fed}. A bed is eroded at the inlet first, and rises where the "
-        "front lays down what it took; a feeder that its deposit fills brings less than its rate.",
-    )  # fmt: skip
+    return DECLARED["sign"].finding(curves, [], errors, c_eq=c_eq, friction=friction, fed=fed)
 
 
 def _tan_alpha(found: Found) -> float:

@@ -6,15 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
 from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
 from ryusa.results.water import WaterFrames
-from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, case_run, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, case_run
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 SEEDS = (1, 2)
 CASES = DELTA, PILE = "delta", "pile"
@@ -162,18 +164,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     each = ", ".join(f"{float(got['angle']):.1f}" for got in deltas)
     own = ", ".join(f"{float(got['angle']):.1f}" for got in piles)
     return [
-        comparison(
-            "delta", "A delta grows into a pool",
-            Source("balance of the grains: dx/dt = q_s/(height of the front times its concentration)"),
-            Axis("time", "s"), Axis("front", "m"), [Curve("front", one["t"], one["front"])],
-            [Curve("front", one["t"], one["expected"])],
-            [
-                misfit("grains missing", max(float(got["missing"]) for got in deltas), "-", bands.DELTA_KEPT),
-                misfit("way over that of the balance, worst seed", worst_way, "-", bands.DELTA_SPEED),
-                misfit("angle less that of a pile, worst seed", worst_angle, "deg", bands.DELTA_ANGLE),
-            ],
-            {"case": "`ryusa new delta`", "runs": f"{len(SEEDS)} seeds", "pile": "the same, in still water"},
-            f"Ratio of the ways {', '.join(f'{way:.3f}' for way in ways)}; concentration of the deposit "
-            f"{float(one['core']):.3f}; angles of the front {each} deg, of piles {own} deg.",
+        DECLARED["delta"].finding(
+            [Curve("front", one["t"], one["front"])], [Curve("front", one["t"], one["expected"])],
+            {"missing": max(float(got["missing"]) for got in deltas), "way": worst_way, "angle": worst_angle},
+            ways=', '.join(f'{way:.3f}' for way in ways), core=float(one['core']), each=each, own=own,
         )
     ]  # fmt: skip

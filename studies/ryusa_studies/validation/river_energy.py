@@ -6,22 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.bore import reflected_bore
 from ryusa.laws.families import BedKind, Mixing, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
 from ryusa.model.row_energy import RowTerm, row_imbalance
-from ryusa.study import Finding, Found, Source, Task, calculation, comparison, misfit
+from ryusa.study import Finding, Found, Task, calculation
 from ryusa.water import steady
 from ryusa.water.row import advance_row, row_at_rest
-from ryusa_studies.validation import river_bands as bands
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_impact import ALONE, against_a_wall
+
+DECLARED = declared(__file__)
 
 G, RHO = 9.80665, 1000.0
 BY_SCHEME = [RowTerm.FALL, RowTerm.UPWIND, RowTerm.LATE, RowTerm.SURFACE]
-TIME = Axis("time", "s")
 
 
 def books(row: ColumnRow, now: RowState, times: Floats) -> Floats:
@@ -101,23 +102,13 @@ def judge(found: Found) -> Sequence[Finding]:
     rest = float(np.abs(left).max() / np.abs(account).max())
     off = abs(float(flow["lost"][-1] / flow["given"][-1]) - 1.0)
     return [
-        comparison(
-            "energy", "Energy account of water that sloshes over bumps and a dam",
-            Source("conservation of energy, term by term"), TIME, Axis("energy", "J/m"), terms,
-            [Curve("left over", closes["t"], left)],
-            [misfit("left over, over the largest term", rest, "-", bands.ENERGY_CLOSES)],
-        ),
-        comparison(
-            "energy-bore", "Energy that a bore loses",
-            Source("rho g q (h_2 - h_1)^3/(4 h_1 h_2), q relative to the bore"), TIME, Axis("lost", "J/m"),
+        DECLARED["energy"].finding(terms, [Curve("left over", closes["t"], left)], {"closes": rest}),
+        DECLARED["energy-bore"].finding(
             [Curve("row", wave["t"], wave["lost"])], [Curve("bore", wave["t"], wave["exact"])],
-            [misfit("lost over exact", float(wave["lost"][-1] / wave["exact"][-1]), "-", bands.ENERGY_BORE)],
-            {"stream": f"{ALONE[1]:g} m/s, {ALONE[0]:g} m deep", "segments": "5 mm, one cell, no friction"},
+            {"lost": float(wave["lost"][-1] / wave["exact"][-1])},
         ),
-        comparison(
-            "energy-uniform", "Energy of uniform flow",
-            Source("what gravity gives, bed and friction between cells take"), TIME, Axis("energy", "J/m"),
+        DECLARED["energy-uniform"].finding(
             [Curve("lost", flow["t"], flow["lost"])], [Curve("given by gravity", flow["t"], flow["given"])],
-            [misfit("relative difference", off, "-", bands.ENERGY_UNIFORM)],
+            {"difference": off},
         ),
     ]  # fmt: skip

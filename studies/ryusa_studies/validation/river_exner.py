@@ -9,14 +9,16 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.measure.statistics import standard_errors
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, case_run, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, case_run
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 CASE = "bed_wave"
 EVEN_LENGTH = 0.12  # of the beds without a wave [m]
@@ -208,22 +210,12 @@ def _decay(found: Found) -> Finding:
         for curve, run, fit in zip(ours, runs, fits, strict=True)
     ]
     noise = float(np.mean([run["noise"] for run in runs]))
-    return comparison(
-        "bed-wave-decay", "Decay of a wave of the bed",
-        Source("linear theory with q_s(q, S) of even beds: sigma = (3 S/h) K k^2/(i k (1 - Fr^2) - 3 S/h)"),
-        Axis("time", "s"), Axis("amplitude of the bed", "mm"), ours, theory,
-        [
-            misfit("decay over that of theory", float(np.mean(rates)), "-", bands.EXNER_DECAY),
-            misfit("Froude number", froude, "-", bands.EXNER_FROUDE["critical"]),
-            misfit("relative error of dq_s/dS", error, "-"),
-            misfit("q_s over that of even beds", own / q_s, "-"),
-        ],
-        {"case": "validation/bed_wave.toml", "wave": f"{one.length:g} m long, {1e3 * one.height:g} mm high"},
-        f"Decay over that of theory by seed {', '.join(f'{rate:.3f}' for rate in rates)}; theory "
-        f"{-sigma.real:.3f} 1/s, with K {1e4 * diffusion:.0f} cm2/s from dq_s/dS {1e4 * derivative:.0f} "
-        f"cm2/s and a settled bed of concentration {core:.3f}, depth {1e3 * depth:.1f} mm, discharge "
-        f"{1e4 * q:.1f} cm2/s. Amplitudes of shorter waves, which are noise, {1e3 * noise:.2f} mm. Celerity "
-        f"{', '.join(f'{-fit[1].imag / k:.4f}' for fit in fits)} m/s, of theory {-sigma.imag / k:.4f} m/s.",
+    return DECLARED["bed-wave-decay"].finding(
+        ours, theory, {"decay": float(np.mean(rates)), "froude": froude, "error": error, "q_s": own / q_s},
+        length=one.length, height=1e3 * one.height, rates=', '.join(f'{rate:.3f}' for rate in rates),
+        real=-sigma.real, diffusion=1e4 * diffusion, derivative=1e4 * derivative, core=core,
+        depth=1e3 * depth, q=1e4 * q, noise=1e3 * noise,
+        imag=', '.join(f'{-fit[1].imag / k:.4f}' for fit in fits), imag_2=-sigma.imag / k,
     )  # fmt: skip
 
 
@@ -239,17 +231,11 @@ def _celerity(found: Found) -> Finding:
         label = f"Froude number {froude:.2f}"
         ours.append(Curve(label, got["t"], 1e2 * place))
         fits.append(Curve(label, got["t"], 1e2 * speed * (got["t"] - got["t"][0])))
-        errors.append(misfit(f"celerity, {label}", speed, "m/s", bands.EXNER_CELERITY[name]))
-        errors.append(misfit("its Froude number", froude, "-", bands.EXNER_FROUDE[name]))
+        errors.append(DECLARED["bed-wave-celerity"].trial(f"celerity-{name}", speed, label))
+        errors.append(DECLARED["bed-wave-celerity"].trial(f"froude-{name}", froude))
         said.append(
             f"{label}: {100.0 * speed:.1f} cm/s, decay {-sigma.real:.2f} 1/s, amplitude from "
             f"{1e3 * abs(first):.1f} to {1e3 * abs(amplitude[-1]):.1f} mm, shorter waves "
             f"{1e3 * float(got['noise']):.2f} mm"
         )
-    return comparison(
-        "bed-wave-celerity", "Direction in which a wave of the bed travels",
-        Source("linear theory: downstream below, upstream above a Froude number of 1"), Axis("time", "s"),
-        Axis("way of the crest downstream", "cm"), ours, fits, errors,
-        {"case": "validation/bed_wave.toml", "reference curves": "the fit, whose slope is the celerity"},
-        "; ".join(said) + ".",
-    )  # fmt: skip
+    return DECLARED["bed-wave-celerity"].finding(ours, fits, errors, said="; ".join(said))

@@ -9,15 +9,18 @@ import numpy as np
 from ryusa.casefile.read import read, read_text
 from ryusa.casefile.row.reach_source import reach_of, repeated
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
 from ryusa.model.feeds import IN
 from ryusa.results import Results
 from ryusa.running.runner import run
-from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.river_dam_break import whole
+
+DECLARED = declared(__file__)
 
 CASE, REACH = "fed_river", "even_bed"
 SEED = 1
@@ -43,13 +46,13 @@ def fed() -> dict[str, Floats]:
     """
     with TemporaryDirectory() as folder:
         even = read(case_path(f"{REACH}.toml"), {"seed": str(SEED)})
-        _whole(run(even, f"{folder}/reach", progress=False))
+        whole(run(even, f"{folder}/reach", progress=False))
         path = case_path(f"{CASE}.toml")
         text = path.read_text(encoding="utf-8")
         case = read_text(text, {**FED, "seed": str(SEED)}, path=Path(folder) / path.name)
         reach = reach_of(case)
         assert reach is not None
-        done = _whole(run(case, f"{folder}/river", progress=False))
+        done = whole(run(case, f"{folder}/river", progress=False))
         volume = float((np.pi / 6.0 * reach.d**3).sum())
         due = len(repeated(case, reach).t)
         entered = int((done.passages["way"] == IN).sum())
@@ -84,12 +87,6 @@ def _passed(done: Results, q: float, q_s: float) -> dict[str, Floats]:
     return {"carried": np.array(carried), "discharge": np.array(float(off))}
 
 
-def _whole(done: Results) -> Results:
-    if not done.complete:
-        raise KeyboardInterrupt
-    return done
-
-
 def _task() -> Task:
     return calculation(fed, seconds=460.0)
 
@@ -110,29 +107,18 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     lost = -q_s / (core * (JUDGED[1] - JUDGED[0]))  # rate if all that passes came from this bed [m/s]
     span = t[0] + np.linspace(0.0, 0.01 / abs(lost), 41)
     return [
-        comparison(
-            "feeder-reach", "A river fed by its reach",
-            Source("balance of volumes: a bed that is fed what it carries on stays"),
-            Axis("time", "s"), Axis("rise of the bed", "mm"),
+        DECLARED["feeder-reach"].finding(
             [Curve("river", t, 1e3 * (bed - bed[0]))],
             [
                 Curve("balance", t, np.zeros_like(t)),
                 Curve("all of q_s taken from this bed", span, 1e3 * lost * (span - t[0])),
             ],
-            [
-                misfit("what the bed keeps over q_s", kept, "-", bands.FEEDER_BED),
-                misfit("volume that crossed over q_s and time", float(got["crossed"]), "-",
-                       bands.FEEDER_PASSED),
-                misfit("share of the grains that wait", float(got["waiting"] / got["due"]), "-",
-                       bands.FEEDER_WAITING),
-                misfit("discharge that enters, largest error", float(got["discharge"]), "-",
-                       bands.FEEDER_DISCHARGE),
-                misfit("q_s of the river over that of the reach", float(got["carried"])),
-                misfit("relative error of q_s of the reach", float(got["error"]) / q_s),
-            ],
-            {"case": f"`ryusa new {CASE}`", "reach": f"`ryusa new {REACH}`"},
-            f"The bed rises by {1e3 * rate:.3f} mm/s from {t[0]:g} to {t[-1]:g} s; if all of q_s came from "
-            f"it, it would fall by {-1e3 * lost:.2f} mm/s. q_s {1e4 * q_s:.2f} cm2/s, "
-            f"{float(got['due']):.0f} grains due, a bed of concentration {core:.3f}.",
+            {
+                "kept": kept, "crossed": float(got["crossed"]), "waiting": float(got["waiting"] / got["due"]),
+                "discharge": float(got["discharge"]), "carried": float(got["carried"]),
+                "error": float(got["error"]) / q_s,
+            },
+            rate=1e3 * rate, begin=t[0], end=t[-1], lost=-1e3 * lost, q_s=1e4 * q_s, due=float(got["due"]),
+            core=core,
         )
     ]  # fmt: skip

@@ -10,30 +10,22 @@ from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.cases import case_path
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import SurfaceRule
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.row import ColumnRow
 from ryusa.results import Results
-from ryusa.study import (
-    CaseRun,
-    Finding,
-    Found,
-    Level,
-    Plan,
-    Source,
-    Task,
-    calculation,
-    case_run,
-    comparison,
-    misfit,
-)
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, Trial, calculation, case_run
 from ryusa.water.coupling import steps_resolved
 from ryusa.water.row_grains import GrainsInRow
-from ryusa_studies.validation import river_bands as bands
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 SEEDS, SEGMENTS = (1, 2, 3, 4), 8
+REACH = ("q_star", "discharge", "u_high", "u_low", "phi_low", "height")
+AT_REST = 1e-3  # way over d of a grain that has not moved, on a level bed [-]
 PROFILES = {"u": "speed", "phi": "concentration"}
 MIDDLE = 4e-3, 14e-3  # heights between which a bed of 24 mm is even [m]
 BEGIN, END = 2.0, 6.0  # times between which it is averaged [s]
@@ -44,7 +36,7 @@ def reach(seed: int, segments: int) -> dict[str, Floats]:
 
     Returns
     -------
-    The numbers of `river_bands.REACH_ERROR`: transport rate [-], discharge [m2/s], speed of the water well
+    The numbers of `REACH`: transport rate [-], discharge [m2/s], speed of the water well
     above the bed and in the two diameters above water.zero [m/s], concentration there [-], mean height of
     the grains [m]; profiles over z [m] of the water `u` [m/s] and the concentration `phi` [-]; `residual`
     of momentum [-].
@@ -84,7 +76,7 @@ def reach(seed: int, segments: int) -> dict[str, Floats]:
             )
             sums += rate, through, u[high].mean(), u[low].mean(), phi[low].mean(), height
             of_u, of_phi, count = of_u + u, of_phi + phi, count + 1
-    means = dict(zip(bands.REACH_ERROR, (sums / count)[:, None], strict=True))
+    means = dict(zip(REACH, (sums / count)[:, None], strict=True))
     return {
         "z": column.z - column.origin, "u": of_u / count, "phi": of_phi / count,
         "residual": np.array(grains.worst), **means,
@@ -98,7 +90,7 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     -------
     Over the heights `z` [m]: discharge per height `w` [m/s] and concentration `phi` [-]; in the middle of the
     bed the mean `inside` and that of `ergun` [m/s]; the longest way of a grain over d, `moved` [-], that of
-    half of them, `median`, and how many went farther than `river_bands.AT_REST`, `moving`.
+    half of them, `median`, and how many went farther than `AT_REST`, `moving`.
     """
     del one
     found, frames = run.row, run.frames
@@ -117,7 +109,7 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     return {
         "z": c.z, "w": w, "phi": phi, "inside": np.array(w[middle].mean()),
         "ergun": np.array((1.0 - share) * pores), "moved": np.array(way.max()),
-        "moving": np.array(float((way > bands.AT_REST.high).sum())),
+        "moving": np.array(float((way > AT_REST).sum())),
         "median": np.array(float(np.median(way))),
     }  # fmt: skip
 
@@ -149,19 +141,11 @@ def _seepage(found: Found) -> Finding:
     ours, ergun = float(got["inside"]), float(got["ergun"])
     bed = got["z"] < MIDDLE[1]
     z = got["z"][bed]
-    return comparison(
-        "own-packing", "Seepage through settled grains, and grains at rest",
-        Source("Ergun 1952, with the mean concentration of the middle of the bed"), Axis("height", "m"),
-        Axis("discharge per height", "m/s"), [Curve("row", z, got["w"][bed])],
-        [Curve("Ergun", z, np.full(len(z), ergun))],
-        [
-            misfit("discharge", abs(ours / ergun - 1.0), "-", bands.OWN_PACKING),
-            misfit("longest way of a grain over d, level bed", float(still["moved"]), "-", bands.AT_REST),
-        ],
-        {"grains": "2,560 of 2 mm, settled in the row", "row": "four segments of 9.7 mm"},
-        f"Discharge over that of Ergun {ours / ergun:.4f}, between heights of {1e3 * MIDDLE[0]:g} and "
-        f"{1e3 * MIDDLE[1]:g} mm. On the level bed {int(still['moving'])} grains sank through voids between "
-        f"others by more than the limit; half of all moved by less than {float(still['median']):.1g} d.",
+    return DECLARED["own-packing"].finding(
+        [Curve("row", z, got["w"][bed])], [Curve("Ergun", z, np.full(len(z), ergun))],
+        {"discharge": abs(ours / ergun - 1.0), "way": float(still["moved"])}, ergun=ours / ergun,
+        low=1e3 * MIDDLE[0], high=1e3 * MIDDLE[1], moving=int(still["moving"]),
+        median=float(still["median"]),
     )  # fmt: skip
 
 
@@ -169,16 +153,15 @@ def _as_one_column(found: Found) -> Finding:
     """Differences over their standard errors, which must be small enough to say something."""
     one, many = ([found[_reach(seed, n)] for seed in SEEDS] for n in (1, SEGMENTS))
     residual = max(float(run["residual"]) for run in (*one, *many))
-    errors, said = [misfit("residual of momentum", residual, "-", bands.REACH_CLOSES)], list[str]()
-    for name, most in bands.REACH_ERROR.items():
+    kind, errors, said = DECLARED["reach"], list[Trial](), list[str]()
+    for name in REACH:
         a, b = (np.array([float(run[name][0]) for run in runs]) for runs in (one, many))
         error = math.hypot(a.std(ddof=1), b.std(ddof=1)) / math.sqrt(len(SEEDS))
         words = name.replace("_", " ")
         apart = abs(float(b.mean() - a.mean())) / error
-        errors[-1:-1] = [
-            misfit(f"{words}: difference over its standard error", apart, "-", bands.REACH_APART),
-            misfit(f"{words}: standard error over the mean", error / abs(float(a.mean())), "-", most),
-        ]
+        errors += [
+            kind.trial("apart", apart, words), kind.trial("error", error / abs(float(a.mean())), words),
+        ]  # fmt: skip
         said.append(f"{words} {a.mean():.4g} and {b.mean():.4g} +- {error:.2g}")
     z, d = one[0]["z"], 4.0e-3
     ours, theirs = (
@@ -188,11 +171,5 @@ def _as_one_column(found: Found) -> Finding:
         ]
         for runs in (many, one)
     )
-    return comparison(
-            "reach", "Bed load in a row of eight segments",
-            Source("the same grains in one column of water"), Axis("height above water.zero over d"),
-            Axis("speed of the water (m/s), and concentration"), ours, theirs, errors,
-            {"grains": "those of `ryusa new bedload_3d`", "runs": f"{len(SEEDS)} seeds each"},
-            f"Means from {BEGIN:g} to {END:g} s, column and row, with the standard error of their "
-            f"difference: {'; '.join(said)}.",
-    )  # fmt: skip
+    errors.append(kind.trial("residual", residual))
+    return kind.finding(ours, theirs, errors, begin=BEGIN, end=END, said="; ".join(said))

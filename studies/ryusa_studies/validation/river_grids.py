@@ -6,11 +6,13 @@ from itertools import pairwise
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Known, Source, Task, case_run, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Task, case_run
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 SEEDS = (1, 2)
 GRID = "debris_grid"
@@ -52,12 +54,6 @@ def of_grids(found: Found) -> Finding:
     least, most = min(held[narrow]), max(held[wide])
     runs = [found[grid(seed, wide)] for seed in SEEDS]
     earlier = max(float(np.interp(EARLIER, one["t"], one["share"])) for one in runs)
-    errors = [
-        misfit(f"least share held by {narrow:g} d_max", least, "-", bands.GRID_HOLDS),
-        misfit(f"largest share held by {wide:g} d_max", most, "-", bands.GRID_PASSES),
-        misfit("largest rise of the mean share with the opening", more, "-", bands.GRID_FALLS),
-        misfit(f"largest share held by {wide:g} d_max after {EARLIER:g} s", earlier),
-    ]
     x, end = np.array(OPENINGS), float(found[grid(SEEDS[0], narrow)]["t"][-1])
     curves = [
         Curve(f"seed {seed}", x, np.array([shares[k] for shares in held.values()]))
@@ -66,11 +62,6 @@ def of_grids(found: Found) -> Finding:
     each = "; ".join(
         f"{opening:g} d_max: {', '.join(f'{one:.3f}' for one in shares)}" for opening, shares in held.items()
     )
-    return comparison(
-        "grid", "A grid holds back a debris flow",
-        Source("Ikeya & Uehara 1980: a grid jams below 1.5 d_max", Known.QUOTED),
-        Axis("opening over d_max"), Axis("share of the grains held back"), curves, [], errors,
-        {"case": "`validation/debris_grid`", "runs": f"{len(SEEDS)} seeds", "bars": "8 mm thick"},
-        f"Held after {end:.3g} s: {each}. Water flows through the bars as if they were not there. "
-        "No source was read for the share that passes wide openings.",
+    return DECLARED["grid"].finding(
+        curves, [], {"narrow": least, "wide": most, "rise": more, "earlier": earlier}, end=end, each=each,
     )  # fmt: skip

@@ -13,15 +13,18 @@ import numpy as np
 from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Pressure
 from ryusa.measure.long_section import row_of
 from ryusa.model import State
 from ryusa.model.arrays import Floats
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
-from ryusa.study import Band, Finding, Found, Source, Task, calculation, comparison, misfit
+from ryusa.study import Finding, Found, Task, calculation
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_dam_break import whole
+
+DECLARED = declared(__file__)
 
 CASE = "immersed_column.toml"
 KINDS = ("loose", "dense")
@@ -42,11 +45,6 @@ DRY: Mapping[str, str] = {
     "water.row.pressure": "hydrostatic", "contact.timing": "exact", "time.steps_per_contact": "10",
     "stop.time": "0.15 s",
 }  # fmt: skip
-FLOATS: Band = Band(
-    0.0, math.inf, "-", "a loose column squeezes water out: its pores bear a part of the weight"
-)
-SUCKS: Band = Band(-math.inf, 0.0, "-", "a dense column takes water in: its pores suck (Rondon et al. 2011)")
-SHORTER: Band = Band(-math.inf, 0.8, "-", "a dense column runs out less far (Rondon et al. 2011: about half)")
 
 
 def collapsing(kind: str, pressure: str, seed: int = 1) -> dict[str, Floats]:
@@ -110,27 +108,13 @@ def judge(found: Found) -> Sequence[Finding]:
         f"{kind} {float(one['phi']):.2f} and {1e3 * float(one['high']):.3g} mm high"
         for kind, one in zip(KINDS, runs, strict=False)
     )
-    about = {
-        "column": f"15 mm long; {each}",
-        "grains": "0.3 mm; one seed",
-        "hydrostatic": "the loose column alone: in a trial with the dense one water left the cells at 0.01 s",
-    }
-    rondon = Source("Rondon, Pouliquen & Aussillous 2011, Phys. Fluids 23, 073301: signs, by its abstract")
-    pressure = comparison(
-        "immersed-pore", "Pore pressure of a column that collapses under water", rondon, Axis("time", "s"),
-        Axis("pressure at the floor over the weight", "-"),
+    pressure = DECLARED["immersed-pore"].finding(
         [Curve(kind, one["t"], one["pore"]) for kind, one in zip(KINDS, runs, strict=False)], [],
-        [
-            misfit("loose, mean of the first 50 ms", early[0], "-", FLOATS),
-            misfit("dense, mean of the first 50 ms", early[1], "-", SUCKS),
-        ],
-        about,
+        {"loose": early[0], "dense": early[1]}, each=each,
     )  # fmt: skip
     labels = [*KINDS, "loose, hydrostatic"]
-    front = comparison(
-        "immersed-front", "Front of a column that collapses under water", rondon, Axis("time", "s"),
-        Axis("beyond the column over its length", "-"),
+    front = DECLARED["immersed-front"].finding(
         [Curve(label, one["t"], one["front"]) for label, one in zip(labels, runs, strict=True)], [],
-        [misfit("dense over loose, after 0.4 s", ratio, "-", SHORTER)], about,
+        {"shorter": ratio}, each=each,
     )  # fmt: skip
     return [pressure, front]

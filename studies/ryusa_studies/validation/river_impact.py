@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.bore import reflected_bore
 from ryusa.laws.families import SurfaceRule
 from ryusa.measure.along_row import grains_along_row
@@ -17,9 +17,11 @@ from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Source, Task, calculation, case_run, comparison, misfit
+from ryusa.study import CaseRun, Finding, Found, Task, calculation, case_run
 from ryusa.water.row import advance_row, row_at_rest
-from ryusa_studies.validation import river_bands as bands
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 SEEDS = (1, 2)
 CASE = "front_on_dam"
@@ -142,15 +144,9 @@ def of_bore(found: Found) -> Finding:
     k = int(np.flatnonzero(depth > 0.5 * (h + deep))[0])
     front = float(np.interp(0.5 * (h + deep), depth[k - 1 : k + 1], x[k - 1 : k + 1]))
     line = Curve("closed form", np.array([x[0], place, place, 0.0]), np.array([h, h, deep, deep]))
-    return comparison(
-        "bore", "Water that a wall reflects",
-        Source("volume and momentum of a bore: (r^2 - 1)(r - 1) = 2 Fr^2 r"),
-        Axis("distance from the wall", "m"), Axis("depth", "m"), [Curve("row", x, depth)], [line],
-        [
-            misfit("depth behind the bore", abs(plateau / deep - 1.0), "-", bands.BORE_DEPTH),
-            misfit("way of the bore", abs(front / place - 1.0), "-", bands.BORE_WAY),
-        ],
-        {"depth": f"{100.0 * h:g} cm", "speed": f"{u:g} m/s", "segments": "5 mm"},
+    return DECLARED["bore"].finding(
+        [Curve("row", x, depth)], [line],
+        {"depth": abs(plateau / deep - 1.0), "way": abs(front / place - 1.0)}, h=100.0 * h, u=u,
     )  # fmt: skip
 
 
@@ -176,17 +172,7 @@ def of_front(found: Found) -> Finding:
             f"largest {one['peak']:.2f}, mean over rho u^2 h {one['drag']:.2f}"
         )
     peak = max(one["peak"] for one in forces.values())
-    return comparison(
-        "front", "The front of a debris flow strikes a dam",
-        Source("reflected bore of one fluid, Armanini, Larcher & Odorizzi 2011, derived from its balances"),
-        Axis("Froude number"), Axis("force over that of still fluid of the depth that comes"), curves,
-        [Curve("reflected bore", numbers, law)],
-        [
-            misfit("mean force over that of the bore, worst run", worst, "-", bands.FRONT_FORCE),
-            misfit("mean over all runs", float(np.mean(ratios))),
-            misfit("largest force in 10 ms over that of the bore", peak),
-        ],
-        {"case": f"`validation/{CASE}`", "runs": f"{len(SEEDS)} seeds at each of {len(SPEEDS)} speeds"},
-        "Force of grains on the dam and of still water as deep as before it; one fluid stops as a whole. "
-        f"{'. '.join(said)}.",
+    return DECLARED["front"].finding(
+        curves, [Curve("reflected bore", numbers, law)],
+        {"force": worst, "mean": float(np.mean(ratios)), "peak": peak}, said='. '.join(said),
     )  # fmt: skip

@@ -11,32 +11,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.bore import conjugate_depth
 from ryusa.laws.families import BedKind, Mixing, Pressure, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd, RowState
-from ryusa.study import (
-    Band,
-    Finding,
-    Found,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Task, calculation
 from ryusa.water.row import advance_row, row_at_rest
+from ryusa_studies.validation.declared import declared
 
+DECLARED = declared(__file__)
 G = 9.80665
 BEFORE = 0.02  # depth that enters [m]
 FROUDE = (2.0, 3.0, 4.0, 5.0)  # of what enters
 TIME = 15.0  # [s]
-CONJUGATE = at_most(0.02, "2 % of the conjugate depth")
-LENGTH = Band(3.0, 7.0, "-", "of the depth behind: measured jumps are 4 to 6 long")
-LOSS = at_most(0.05, "5 % of the loss of a jump")
 
 
 def heads(row: ColumnRow, now: RowState) -> tuple[Floats, Floats]:
@@ -117,40 +106,15 @@ def judge(found: Found) -> Sequence[Finding]:
     """Depth, length and loss of each."""
     runs = {froude: found[_task(froude)] for froude in FROUDE}
     numbers = [
-        number
+        DECLARED["jump"].trial(name, number, f"{froude:g}")
         for froude, run in runs.items()
-        for number in (
-            misfit(
-                f"Fr = {froude:g}: depth behind over conjugate depth, off by",
-                abs(float(run["conjugate"]) - 1.0), "-", CONJUGATE,
-            ),
-            misfit(f"Fr = {froude:g}: length over depth behind", float(run["length"]), "-", LENGTH),
-            misfit(
-                f"Fr = {froude:g}: loss over that of a jump, off by", abs(float(run["loss"]) - 1.0), "-", LOSS
-            ),
-            misfit(
-                f"Fr = {froude:g}: loss by the depths alone over that of a jump, off by",
-                abs(float(run["by_depths"]) - 1.0), "-", LOSS,
-            ),
+        for name, number in (
+            ("conjugate", abs(float(run["conjugate"]) - 1.0)), ("length", float(run["length"])),
+            ("loss", abs(float(run["loss"]) - 1.0)), ("by-depths", abs(float(run["by_depths"]) - 1.0)),
         )
     ]  # fmt: skip
-    return [
-        comparison(
-            "jump", "Hydraulic jumps",
-            Source("Belanger 1828; loss (h2 - h1)**3/(4 h1 h2); lengths of Hager 1992"),
-            Axis("distance from the toe", "m"), Axis("surface", "m"),
-            [
-                Curve(f"Fr {float(run['froude']):.2f}", run["x"] - run["toe"], run["surface"])
-                for run in runs.values()
-            ],
-            [], numbers,
-            {
-                "enters": f"{100.0 * BEFORE:g} cm deep at Fr {', '.join(f'{one:g}' for one in runs)}",
-                "turbulence": "mixing length of the row, nothing fitted",
-            },
-            "depths are conjugate within 1.3 %, and the loss by them is that of a jump; heads with the "
-            "speeds at all heights lose more, as a developed flow brings more energy than its mean speed. "
-            "Jumps are short: a surface with one height at each place has no roller that falls back over the "
-            "toe",
-        )
-    ]  # fmt: skip
+    curves = [
+        Curve(f"Fr {float(run['froude']):.2f}", run["x"] - run["toe"], run["surface"])
+        for run in runs.values()
+    ]
+    return [DECLARED["jump"].finding(curves, [], numbers)]

@@ -6,15 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, case_run, comparison, misfit
-from ryusa_studies.validation import river_bands as bands
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, case_run
 from ryusa_studies.validation import river_dam as dam
 from ryusa_studies.validation import river_exner as exner
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 CASE = "overload"
 SEEDS = (1, 2)
@@ -132,22 +134,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     ]
     each = ", ".join(f"{float(one @ theory / (theory @ theory)):.3f}" for one in rises)
     return [
-        comparison(
-            "overload", "A bed that is overloaded",
-            Source("linear theory with q_s(q, S) of even beds; its volume is that of the extra feed"),
-            Axis("distance from the feeders", "m"), Axis("rise of the bed", "mm"),
+        DECLARED["overload"].finding(
             [Curve(f"seed {seed}", at, 1e3 * one) for seed, one in zip(SEEDS, rises, strict=True)],
             [Curve("linear theory", at, 1e3 * theory)],
-            [
-                misfit("rise over that of theory", share, "-", bands.OVERLOAD_RISE),
-                misfit("rms of the rest over the largest rise", off, "-", bands.OVERLOAD_SHAPE),
-                misfit("extra grains there or passed over the extra feed", float(np.mean(stored)), "-"),
-                misfit("relative error of dq_s/dS", error, "-"),
-            ],
-            {"case": "validation/overload.toml", "extra feed": f"{1e4 * EXTRA:.2f} cm2/s for {t:g} s"},
-            f"Rise over that of theory by seed {each}; K {1e4 * diffusion:.0f} cm2/s from dq_s/dS "
-            f"{1e4 * derivative:.0f} cm2/s and a bed of concentration {core:.3f}; q_s {1e4 * q_s:.2f} cm2/s "
-            f"over even beds, of which the extra feed is {EXTRA / q_s:.2f}; depth {1e3 * depth:.0f} mm, "
-            f"Froude number {froude:.2f}.",
+            {"rise": share, "shape": off, "stored": float(np.mean(stored)), "error": error},
+            extra=1e4 * EXTRA, t=t, each=each, diffusion=1e4 * diffusion, derivative=1e4 * derivative,
+            core=core, q_s=1e4 * q_s, q_s_2=EXTRA / q_s, depth=1e3 * depth, froude=froude,
         )
     ]  # fmt: skip

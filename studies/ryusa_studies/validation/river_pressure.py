@@ -5,34 +5,24 @@ otherwise; they were written down before the package had a pressure, those of th
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Pressure, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
-from ryusa.study import (
-    Band,
-    Finding,
-    Found,
-    Level,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa_studies.validation import river_jump as jump
 from ryusa_studies.validation import river_sill as sill
+from ryusa_studies.validation.declared import declared
 
 TITLE = "Pressure along a row"
+DECLARED = declared(__file__)
 G = 9.80665
 WALLS = RowEnd(EndKind.WALL), RowEnd(EndKind.WALL)
 BOTH = (Pressure.FULL.word, Pressure.HYDROSTATIC.word)
@@ -42,21 +32,6 @@ LENGTHS = (0.5, 1.0, 3.0)  # of standing waves: wave number times depth
 ANTIDUNE = 1.31  # Froude number of the flow over a wavy bed
 OVER_WAVES = (0.5, 1.0, 2.0)
 IN_BED = (1.0, 3.0)  # depth of a porous bed times the wave number
-X = Axis("distance", "m")
-
-
-def _twice(error: float, unit: str = "-") -> Band:
-    return at_most(2.0 * error, f"twice the error of the prototype, {error:g}", unit)
-
-
-FREQUENCY: Mapping[float, Band] = {0.5: _twice(3e-4), 1.0: _twice(3e-4), 3.0: _twice(7e-4)}
-SOLITARY_HEIGHT = at_most(0.01, "a solitary wave keeps its height: 1 % in 50 depths")
-SOLITARY_SPEED = _twice(7e-4)
-OVER_WAVY: Mapping[float, Band] = {0.5: _twice(0.008), 1.0: _twice(0.001), 2.0: _twice(0.045)}
-PORE: Mapping[float, Band] = {1.0: _twice(0.0029), 3.0: _twice(0.0063)}
-PLATE = at_most(0.03, "3 % of Rehbock's formula")
-BRINK = _twice(0.037)
-COLLAPSE = at_most(0.25, "of the width of the column, rms of 14 times")
 
 
 def water(dz: float, n: int, depth: float, **more: object) -> Column:
@@ -306,16 +281,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 def _standing(found: Found) -> Finding:
     ratios = np.array([float(found[one]["ratio"]) for one in _waves()]).reshape(len(LENGTHS), 2)
     kh = np.array(LENGTHS)
-    return comparison(
-        "waves", "Frequency of standing waves", Source("Airy: omega**2 = g k tanh kh"),
-        Axis("wave number times depth", "-"), Axis("frequency over theory", "-"),
+    return DECLARED["waves"].finding(
         [Curve(word, kh, ratios[:, n]) for n, word in enumerate(BOTH)],
         [Curve("theory", kh, np.ones(len(kh)))],
-        [
-            misfit(f"kh = {one:g}: frequency off by", abs(ratios[n, 0] - 1.0), "-", FREQUENCY[one])
-            for n, one in enumerate(LENGTHS)
-        ],
-        {"levels": "10", "segments": "40 in half a wave"},
+        {"kh": {f"{one:g}": abs(ratios[n, 0] - 1.0) for n, one in enumerate(LENGTHS)}},
     )  # fmt: skip
 
 
@@ -325,83 +294,57 @@ def _solitary(found: Found) -> Finding:
     mean = float(run["height"][9:].mean())
     speed = float(np.polyfit(run["t"][9:], run["place"][9:], 1)[0])
     theory = celerity(mean) * math.sqrt(G * DEPTH)
-    return comparison(
-        "solitary", "A solitary wave over fifty depths",
-        Source("Grimshaw 1971, third order: form, speed and motion within the water"),
-        Axis("time", "s"), Axis("height over depth", "-"), [Curve("row", run["t"], run["height"])],
+    return DECLARED["solitary"].finding(
+        [Curve("row", run["t"], run["height"])],
         [Curve("at ten depths", run["t"], np.full(len(run["t"]), early))],
-        [
-            misfit("height changed from 10 to 58 depths", abs(late / early - 1.0), "-", SOLITARY_HEIGHT),
-            misfit("speed off by", abs(speed / theory - 1.0), "-", SOLITARY_SPEED),
-        ],
-        {"height": "0.2 depths", "levels": "10", "segments": "a tenth of the depth"},
+        {"height": abs(late / early - 1.0), "speed": abs(speed / theory - 1.0)},
     )  # fmt: skip
 
 
 def _wavy(found: Found, plan: Plan) -> Finding:
     lengths, runs = _lengths(plan), [found[one] for one in _over_waves(plan)]
     kh = np.linspace(0.4, 2.2, 50)
-    numbers = [
-        misfit(
-            f"kh = {one:g}: surface over bed off by", abs(float(run["ratio"]) / kennedy(one) - 1.0), "-",
-            OVER_WAVY[one],
-        )
-        for one, run in zip(lengths, runs, strict=True)
-    ]  # fmt: skip
-    return comparison(
-        "wavy", "Surface over a wavy bed",
-        Source("potential flow (Kennedy 1963): 1/(cosh kh - sinh kh/(Fr**2 kh))"),
-        Axis("wave number times depth", "-"), Axis("height of the surface over that of the bed", "-"),
+    return DECLARED["wavy"].finding(
         [Curve("row", np.array(lengths), np.array([float(run["ratio"]) for run in runs]))],
-        [Curve("potential flow", kh, np.array([kennedy(one) for one in kh]))], numbers,
-        {"Froude number": f"{ANTIDUNE:g}, of antidunes", "bed": "0.02 depths high", "levels": "20"},
+        [Curve("potential flow", kh, np.array([kennedy(one) for one in kh]))],
+        {
+            "kh": {
+                f"{one:g}": abs(float(run["ratio"]) / kennedy(one) - 1.0)
+                for one, run in zip(lengths, runs, strict=True)
+            },
+        },
     )  # fmt: skip
 
 
 def _pore(found: Found) -> Finding:
     runs = [found[one] for one in _in_beds()]
-    numbers = [
-        misfit(
-            f"kD = {kd:g}: largest difference over that at the top",
-            float(np.abs(run["p"] - run["exact"]).max()), "-", PORE[kd],
-        )
-        for kd, run in zip(IN_BED, runs, strict=True)
-    ]  # fmt: skip
-    return comparison(
-        "pore-waves", "Pressure within a porous bed under a wave",
-        Source("Putnam 1949, with Darcy's law: cosh kz/cosh kD"), Axis("pressure over that at the top", "-"),
-        Axis("height over thickness of the bed", "-"),
+    return DECLARED["pore-waves"].finding(
         [Curve(f"row, kD {kd:g}", run["p"], run["z"]) for kd, run in zip(IN_BED, runs, strict=True)],
         [Curve(f"theory, kD {kd:g}", run["exact"], run["z"]) for kd, run in zip(IN_BED, runs, strict=True)],
-        numbers, {"bed": "grains of 1 mm, concentration 0.6", "kh": "1"},
+        {
+            "kd": {
+                f"{kd:g}": float(np.abs(run["p"] - run["exact"]).max())
+                for kd, run in zip(IN_BED, runs, strict=True)
+            },
+        },
     )  # fmt: skip
 
 
 def _plate(found: Found) -> Finding:
     own, still = (found[one] for one in _of_both(plate))
     off = abs(float(own["c"]) / float(own["rehbock"]) - 1.0)
-    return comparison(
-        "plate", "Discharge over a thin plate with air behind it",
-        Source("Rehbock 1929: C = 0.602 + 0.083 h/P, with h + 1.1 mm"), X, Axis("surface", "m"),
+    return DECLARED["plate"].finding(
         [Curve(word, run["x"], run["surface"]) for word, run in zip(BOTH, (own, still), strict=True)], [],
-        [misfit("q/(sqrt(g) H^1.5) over that of Rehbock, off by", off, "-", PLATE)],
-        {
-            "plate": "8 cm high", "head": "about 6 cm",
-            "q/(sqrt(g) H^1.5)": f"{float(own['c']):.3f}, hydrostatic {float(still['c']):.3f}, "
-            f"Rehbock {float(own['rehbock']):.3f}",
-        },
+        {"rehbock": off}, c=float(own["c"]), still=float(still["c"]), rehbock=float(own["rehbock"]),
     )  # fmt: skip
 
 
 def _brink(found: Found) -> Finding:
     own, still = (found[one] for one in _of_both(brink))
-    return comparison(
-        "brink", "Depth at a free overfall", Source("Rouse 1936: 0.715 of critical depth at the brink"),
-        Axis("distance from the brink over critical depth", "-"), Axis("depth over critical depth", "-"),
+    return DECLARED["brink"].finding(
         [Curve(word, run["x"], run["depth"]) for word, run in zip(BOTH, (own, still), strict=True)],
         [Curve("measured at the brink", np.zeros(1), np.array([0.715]))],
-        [misfit("depth over critical depth, off 0.715 by", abs(float(own["brink"]) - 0.715), "-", BRINK)],
-        {"Froude number": "0.6 upstream", "levels": "25"},
+        {"brink": abs(float(own["brink"]) - 0.715)},
     )  # fmt: skip
 
 
@@ -409,12 +352,6 @@ def _collapse(found: Found) -> Finding:
     own, still = (found[one]["x"] for one in _of_both(collapse))
     measured = np.array(FRONT_X)
     t, off = np.array(FRONT_T), float(np.sqrt(((own - measured) ** 2).mean()))
-    return comparison(
-        "front", "Front of a collapsing column of water", Source("Martin & Moyce 1952, table 2"),
-        Axis("t sqrt(2 g/a)", "-"), Axis("place of the front over a", "-"),
-        [Curve(FULL, t, own), Curve(HYDROSTATIC, t, still)], [Curve("measured", t, measured)],
-        [misfit("distance from the measured front, rms over a", off, "-", COLLAPSE)],
-        {"column": "a = 57 mm wide, 2 a high", "levels": "20", "segments": "a/20"},
-        "the front is ahead at all times, as in other codes: in the experiment a diaphragm had to leave "
-        "first, and the bottom rubs; the prototype had 0.245",
+    return DECLARED["front"].finding(
+        [Curve(FULL, t, own), Curve(HYDROSTATIC, t, still)], [Curve("measured", t, measured)], {"rms": off},
     )  # fmt: skip

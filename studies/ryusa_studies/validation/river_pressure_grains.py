@@ -11,39 +11,26 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Buoyancy, Drag, Hindrance, Pressure, Profile
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model import Water
 from ryusa.model.arrays import Floats
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.model.scene import EventRule
-from ryusa.study import (
-    Band,
-    Finding,
-    Found,
-    Level,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
 from ryusa_studies.validation import river_immersed as immersed
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_pressure import BOTH, WALLS, G, water
 
 TITLE = "Grains under the pressure along a row"
+DECLARED = declared(__file__)
 RHO, NU = 1000.0, 1e-6  # of the water [kg/m3], [m2/s]
 D, PITCH, LAYERS = 0.002, 0.0026, 14  # of grains that sink: diameter, distances and layers [m]
 DENSITIES = (2650.0, 1540.0, 1048.0)  # gravel, coal, polystyrene [kg/m3]
 STEPS = {2650.0: 40, 1540.0: 50, 1048.0: 100}  # exchanges until they sink steadily
-SINKING: Band = at_most(0.01, "1 % of their weight in water")
-SEEPS: Band = at_most(0.03, "the discharge is that of Dupuit's formula without his assumption (Charny)")
-RISES: Band = at_most(0.01, "1 % of the loss by Ergun's law")
 
 
 def sinking(density: float) -> dict[str, Floats]:
@@ -176,18 +163,14 @@ def _borne(found: Found) -> Finding:
     runs: Mapping[float, Mapping[str, Floats]] = {
         one: found[task] for one, task in zip(DENSITIES, _sinking(), strict=True)
     }
-    numbers = []
+    off = dict[str, float]()
     for density, run in runs.items():
         late = slice(3 * len(run["t"]) // 4, None)
-        off = np.abs(run["borne"][late] - run["momentum"][late]).max()
-        numbers.append(misfit(f"{density:g} kg/m3: off by", float(off), "-", SINKING))
-    return comparison(
-        "sinking", "Pressure below grains that sink",
-        Source("momentum of the mixture: p = (sigma - rho) phi H (g + dv/dt)"), Axis("time", "s"),
-        Axis("pressure over the weight in water", "-"),
+        off[f"{density:g}"] = float(np.abs(run["borne"][late] - run["momentum"][late]).max())
+    return DECLARED["sinking"].finding(
         [Curve(f"{one:g} kg/m3", run["t"], run["borne"]) for one, run in runs.items()],
         [Curve(f"by momentum, {one:g} kg/m3", run["t"], run["momentum"]) for one, run in runs.items()],
-        numbers, {"grains": "2 mm, concentration 0.31 at the start", "layer": f"{LAYERS} grains thick"},
+        {"off": off},
     )  # fmt: skip
 
 
@@ -195,22 +178,16 @@ def _seeps(found: Found) -> Finding:
     own, still = (found[one] for one in _seeping())
     x = np.linspace(0.0, SEEPAGE["length"], 60)
     off = abs(float(own["ratio"]) - 1.0)
-    return comparison(
-        "dam", "Water seeps through a dam of grains",
-        Source("Charny 1951: K (h1**2 - h2**2)/(2 L) holds with the flow up and down too"),
-        Axis("distance from the upper face", "m"), Axis("surface", "m"),
+    return DECLARED["dam"].finding(
         [Curve(word, run["x"], run["surface"]) for word, run in zip(BOTH, (own, still), strict=True)],
-        [Curve("Dupuit", x, dupuit_surface(x))], [misfit("discharge off by", off, "-", SEEPS)],
-        {"hydrostatic": f"discharge over the formula's {float(still['ratio']):.3f}", "dam": "20 cm long"},
+        [Curve("Dupuit", x, dupuit_surface(x))], {"discharge": off}, ratio=float(still["ratio"]),
     )  # fmt: skip
 
 
 def _rises(found: Found) -> Finding:
     run = found[_rising()]
     line = run["head"][0] - run["ergun"] * (run["z"] - run["z"][0])
-    return comparison(
-        "rising", "Water rises through a bed", Source("Ergun 1952"), Axis("head over the surface", "m"),
-        Axis("height", "m"), [Curve("row", run["head"], run["z"])], [Curve("Ergun", line, run["z"])],
-        [misfit("gradient off by", abs(float(run["ratio"]) - 1.0), "-", RISES)],
-        {"bed": f"grains of 5 mm, concentration {BED['phi']:g}", "speed": "5 mm/s over the bed"},
+    return DECLARED["rising"].finding(
+        [Curve("row", run["head"], run["z"])], [Curve("Ergun", line, run["z"])],
+        {"gradient": abs(float(run["ratio"]) - 1.0)},
     )  # fmt: skip

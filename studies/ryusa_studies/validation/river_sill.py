@@ -10,24 +10,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Pressure, SurfaceRule
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowDam, RowEnd, RowState
-from ryusa.study import Finding, Found, Source, Task, at_most, calculation, comparison, misfit
+from ryusa.study import Finding, Found, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
 
 G = 9.80665
 DX, DZ = 0.01, 0.005
 PLATE = 0.08  # height of plate and drop [m]
 HEAD = 0.06  # about that over the plate [m]
 TIME = 15.0  # [s]
-X = Axis("distance behind the crest", "m")
-DISCHARGE = at_most(0.03, "3 % of Rehbock's formula, for a plate within the row")
-LANDING = at_most(0.05, "5 % of the way from the plate to where the middle of the measured nappe lands")
-POOL = at_most(0.20, "20 % of the depth that Rand 1955 measured below the nappe of a drop")
-JET = at_most(0.15, "15 % of the depth that Rand 1955 measured of the jet along the floor behind a drop")
 
 
 def reach_of_nappe(fall: float, head: float, velocity_head: float) -> float:
@@ -146,19 +144,10 @@ def _of_plate(found: Found) -> Finding:
     head, velocity_head = float(own["head"]), float(own["velocity_head"])
     fall = np.linspace(0.0, PLATE - pool, 20)
     middle = np.array([reach_of_nappe(float(one), head, velocity_head) for one in fall])
-    return comparison(
-        "sill", "A thin plate within a row, with air below its nappe",
-        Source("Rehbock 1929; middle of the nappe by Blaisdell 1954"), X, Axis("surface", "m"),
-        [_near("air behind it", own)],
-        [Curve("middle of the measured nappe", middle, PLATE - fall)],
-        [
-            misfit("q/(sqrt(g) H^1.5) over that of Rehbock, off by", abs(c / rehbock - 1.0), "-", DISCHARGE),
-            misfit("way to where it lands, off by", abs(lands / float(middle[-1]) - 1.0), "-", LANDING),
-        ],
-        {
-            "plate": "8 cm high", "head": f"{100.0 * head:.2f} cm", "it lands": f"{100.0 * lands:.2f} cm",
-            "q/(sqrt(g) H^1.5)": f"{c:.3f}, Rehbock {rehbock:.3f}; a nappe that clings: 0.714",
-        },
+    return DECLARED["sill"].finding(
+        [_near("air behind it", own)], [Curve("middle of the measured nappe", middle, PLATE - fall)],
+        {"rehbock": abs(c / rehbock - 1.0), "lands": abs(lands / float(middle[-1]) - 1.0)}, head=100.0 * head,
+        lands=100.0 * lands, c=c, rehbock=rehbock,
     )  # fmt: skip
 
 
@@ -168,17 +157,12 @@ def _of_drop(found: Found) -> Finding:
     pool, jet, length = drop_of_rand(q, PLATE, G)
     beneath = float(surface[(x > 0.0) & (x < 0.5 * lands)].mean())
     behind = float(surface[(x > length) & (x < length + 2.0 * PLATE)].mean())
-    return comparison(
-        "drop", "Pool and jet behind a drop with air below its nappe",
-        Source("Rand 1955: 1.00 D^0.22 and 0.54 D^0.425 of its height, D = q^2/(g P^3)"), X,
-        Axis("surface", "m"), [_near("row", own)],
+    return DECLARED["drop"].finding(
+        [_near("row", own)],
         [
             Curve("pool, measured", np.array([0.0, 0.5 * lands]), np.full(2, pool)),
             Curve("jet, measured", np.array([length, length + 2.0 * PLATE]), np.full(2, jet)),
         ],
-        [
-            misfit("depth of the pool below the nappe, off by", abs(beneath / pool - 1.0), "-", POOL),
-            misfit("depth of the jet behind it, off by", abs(behind / jet - 1.0), "-", JET),
-        ],
-        {"drop": "8 cm", "drop number": f"{q * q / (G * PLATE**3):.3g}", "it lands": f"{100 * lands:.1f} cm"},
+        {"pool": abs(beneath / pool - 1.0), "jet": abs(behind / jet - 1.0)}, number=q * q / (G * PLATE**3),
+        lands=100 * lands,
     )  # fmt: skip

@@ -7,24 +7,15 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Arm, Rolling, Slip
 from ryusa.model import ContactLaw, RollingLaw
 from ryusa.model.arrays import Floats
-from ryusa.study import (
-    Finding,
-    Found,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-    relative,
-)
+from ryusa.study import Finding, Found, Plan, Task, calculation, relative
+from ryusa_studies.validation.declared import declared
 
 TITLE = "A sphere slides and rolls"
+DECLARED = declared(__file__)
 G, D, K_N = 9.80665, 2.0e-3, 1.0e3  # [m/s2], [m], [N/m]
 MU, FAST = 0.3, 0.2  # sliding: [-], [m/s]
 MU_R, SLOW = 0.05, 0.02  # rolling: [-], [m/s]
@@ -89,26 +80,13 @@ def _slides(found: Found) -> Finding:
     ours = found[calculation(slide)]
     t = ours["t"]
     law = np.maximum(FAST - MU * G * t, 5.0 / 7.0 * FAST)
-    return comparison(
-        "slide-to-roll", "Sliding until the grain rolls at 5/7 of its speed",
-        Source("v = v_0 - mu g t until 2 v_0/(7 mu g), then (5/7) v_0"),
-        Axis("time", "s"), Axis("speed", "m/s"),
+    return DECLARED["slide-to-roll"].finding(
         [Curve("speed", t, ours["v"]), Curve("spin times radius", t, 0.5 * D * ours["omega"])],
         [
             Curve("speed", t, law),
             Curve("spin times radius", t, np.minimum(2.5 * MU * G * t, 5.0 / 7.0 * FAST)),
         ],
-        [
-            misfit(
-                "largest difference over the first speed", relative(ours["v"], law), "-",
-                at_most(2e-3, "the tangential spring stores energy before the contact slides"),
-            ),
-            misfit(
-                "last speed over (5/7) v_0, less 1", abs(float(ours["v"][-1] / law[-1]) - 1.0), "-",
-                at_most(2e-3, "energy in the tangential spring"),
-            ),
-        ],
-        {"d": "2 mm", "mu": "0.3", "v_0": "0.2 m/s"},
+        {"difference": relative(ours["v"], law), "last": abs(float(ours["v"][-1] / law[-1]) - 1.0)},
     )  # fmt: skip
 
 
@@ -118,20 +96,8 @@ def _stops(found: Found, model: str) -> Finding:
     until = np.minimum(t, SLOW / brake)
     law = SLOW * until - 0.5 * brake * until**2
     stop = 0.5 * SLOW**2 / brake
-    return comparison(
-        f"stops-{model}", f"A grain stopped by rolling friction: {model}",
-        Source("x = v_0 t - a t^2/2, a = (5/7) mu_r g, up to v_0^2/(2 a); types after Ai et al. 2011"),
-        Axis("time", "s"), Axis("way", "mm"),
+    return DECLARED["stops-{model}"].finding(
         [Curve("way", t, 1e3 * ours["x"])], [Curve("way", t, 1e3 * law)],
-        [
-            misfit(
-                "largest difference over the distance", relative(ours["x"], law), "-",
-                at_most(5e-3, "the rolling spring is loaded first"),
-            ),
-            misfit(
-                "stopping distance over v_0^2/(2 a), less 1", abs(float(ours["x"][-1]) / stop - 1.0), "-",
-                at_most(5e-3, "the same"),
-            ),
-        ],
-        {"d": "2 mm", "mu_r": "0.05", "v_0": "0.02 m/s"},
+        {"difference": relative(ours["x"], law), "distance": abs(float(ours["x"][-1]) / stop - 1.0)},
+        model=model,
     )  # fmt: skip

@@ -5,29 +5,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.measure import discharge
 from ryusa.model.arrays import Floats
 from ryusa.results import Results
-from ryusa.study import (
-    Band,
-    CaseRun,
-    Finding,
-    Found,
-    Known,
-    Level,
-    Plan,
-    Source,
-    Task,
-    case_run,
-    comparison,
-    misfit,
-    over_seeds,
-)
-from ryusa_studies.validation.sampling import SAMPLING
+from ryusa.study import CaseRun, Finding
+from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.sampled import SampledRuns, SeedNumbers
 
 TITLE = "Discharge of a silo"
+DECLARED = declared(__file__)
 WIDTHS = (1.6, 2.0, 2.4, 2.8)  # of the square opening [cm]: 4 to 7 diameters
 D, G, RADIUS = 4.0e-3, 9.81, 0.036  # of the case file [m], [m/s2], [m]
 OPENED, STEADY = 0.4, 0.55  # shutter away, and flow steady [s]
@@ -62,19 +49,15 @@ def _length(width: float) -> float:
     return OPENED + min(SHARE * 0.36 / rate, 1.6)
 
 
-def _run(width: float, seed: int) -> CaseRun:
-    # a quarter of the stiffness of the case: half the steps, overlaps of 0.01 d while the grains flow
-    changed = {
-        "walls": walls(width), "stop.time": f"{_length(width):.2f} s", "contact.stiffness": "100 N/cm",
-    }  # fmt: skip
-    return case_run(case_path("hopper.toml"), changed, seed=seed)
-
-
-def tasks(plan: Plan) -> Sequence[Task]:
-    """Runs of half a minute, at the full level alone: the others have an hour on two cores."""
-    if plan.level is not Level.FULL:
-        return []
-    return [_run(width, seed) for seed in SAMPLING["silo"].seeds(plan) for width in WIDTHS]
+# a quarter of the stiffness of the case: half the steps, overlaps of 0.01 d while the grains flow
+RUNS = SampledRuns(
+    "silo", "hopper.toml",
+    {
+        one: {"walls": walls(one), "stop.time": f"{_length(one):.2f} s", "contact.stiffness": "100 N/cm"}
+        for one in WIDTHS
+    },
+)  # fmt: skip
+tasks = RUNS.tasks
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
@@ -115,48 +98,20 @@ def fitted(width: Floats, rate: Floats, density: float) -> tuple[float, float, f
     return c, float(-at_zero / slope) / D, float(power)
 
 
-def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+@RUNS.judge
+def judge(runs: SeedNumbers) -> Sequence[Finding]:
     """Power and constants of Beverloo's law."""
-    if plan.level is not Level.FULL:
-        return []
     width = 0.01 * np.array(WIDTHS)
-    seeds = SAMPLING["silo"].seeds(plan)
-    runs = {seed: [found[_run(one, seed)] for one in WIDTHS] for seed in seeds}
-    rates = np.array([[float(one["rate"]) for one in runs[seed]] for seed in seeds])
-    density = [float(np.mean([one["density"] for one in runs[seed]])) for seed in seeds]
+    rates = np.array([runs("rate", one) for one in WIDTHS]).T  # seed, width
+    density = np.mean([runs("density", one) for one in WIDTHS], axis=0)
     fits = np.array([fitted(width, rate, rho) for rate, rho in zip(rates, density, strict=True)])
-    halves = np.array([[one["halves"][1] / one["halves"][0] for one in runs[seed]] for seed in seeds])
+    halves = np.array([[one["halves"][1] / one["halves"][0] for one in runs.of[width]] for width in WIDTHS])
     fine = np.linspace(width[0], width[-1], 50)
     law = 0.58 * PER_SQUARE * float(np.mean(density)) * math.sqrt(G) * (fine - K * D) ** 2.5
     return [
-        comparison(
-            "beverloo", "Rate of discharge over the width of the opening",
-            Source(
-                "Beverloo et al. 1961: W = C rho sqrt(g) (a - k d)^2.5, as quoted by Mankoc et al. 2007; "
-                "from memory, and deciding nothing: C = 0.58, k = 1.4 and their ranges, 4/pi for a square",
-                Known.QUOTED,
-            ),
-            Axis("width of the opening", "m"), Axis("rate of discharge", "kg/s"),
+        DECLARED["beverloo"].finding(
             [Curve("grains", width, rates.mean(axis=0))], [Curve("C = 0.58, k = 1.4", fine, law)],
-            [
-                misfit(
-                    "power of a - 1.4 d", over_seeds(fits[:, 2].tolist(), "-"), "-",
-                    Band(2.35, 2.65, "-", "5/2, with what the scatter of a few openings allows"),
-                ),
-                misfit(
-                    "C, with the power 5/2; 0.55 to 0.65 by memory", over_seeds(fits[:, 0].tolist(), "-"), "-"
-                ),
-                misfit(
-                    "k, with the power 5/2; 1 to 2 by memory", over_seeds(fits[:, 1].tolist(), "-"), "-"
-                ),
-                misfit(
-                    "rate of the second half over the first", over_seeds(halves.mean(axis=1).tolist(), "-"),
-                    "-", Band(0.9, 1.1, "-", "the rate does not depend on the height of the grains"),
-                ),
-            ],
-            {
-                "grains": "4 mm, +- 10 %", "friction": "0.5", "silo": "7.2 cm wide",
-                "bulk density": f"{np.mean(density):.0f} kg/m3",
-            },
+            {"power": fits[:, 2], "C": fits[:, 0], "k": fits[:, 1], "rate": halves.mean(axis=0)},
+            density=np.mean(density),
         ),
     ]  # fmt: skip

@@ -14,34 +14,11 @@ from ryusa.study.verdict_words import checks, tally
 from ryusa_studies.validation.sampling import CLOSED, sampling_lines
 
 NAMES = (
-    "water_alone",
-    "river",
-    "river_pressure",
-    "river_pressure_grains",
-    "river_debris",
-    "terminal_velocity",
-    "suspension",
-    "balance",
-    "impact",
-    "hertz",
-    "hertz_oblique",
-    "hertz_pairs",
-    "rebound",
-    "rolling",
-    "gas",
-    "incline",
-    "silo",
-    "collapse",
-    "channel_collapse",
-    "gravel_heap",
-    "drum",
-    "plane_shear",
-    "split_bottom",
-    "transport",
-    "equilibrium",
-    "frey",
-    "maurin",
-)
+    "water_alone", "river", "river_pressure", "river_pressure_grains", "river_debris",
+    "terminal_velocity", "suspension", "balance", "impact", "hertz", "hertz_oblique", "hertz_pairs",
+    "rebound", "rolling", "gas", "incline", "silo", "collapse", "channel_collapse", "gravel_heap", "drum",
+    "plane_shear", "split_bottom", "transport", "equilibrium", "frey", "maurin",
+)  # fmt: skip
 
 
 class ValidationStudy(Study):

@@ -8,27 +8,18 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Profile
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
 from ryusa.model.arrays import Floats
 from ryusa.model.scene import EventRule
-from ryusa.study import (
-    Finding,
-    Found,
-    Plan,
-    Source,
-    Task,
-    Trial,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Plan, Task, calculation
 from ryusa.water.coupling import Coupling
+from ryusa_studies.validation.declared import declared
 
 TITLE = "A suspension settles"
+DECLARED = declared(__file__)
 PHI = (0.05, 0.15, 0.3, 0.45)
 RATIO, G = 1.65, 9.81
 C_D = 0.44  # of the Newton range, as Schiller and Naumann's
@@ -158,31 +149,19 @@ def _compare(found: Found, where: str, form: str) -> Finding:
     fine = np.linspace(0.01, 0.5, 99)
     ours: list[Curve] = []
     references: list[Curve] = []
-    errors: list[Trial] = []
+    numbers = dict[str, float]()
     for law in LAWS:
-        numbers = found[_call(law, where, form)]
+        got = found[_call(law, where, form)]
         n = exponent(law, where, form)
         name = f"{law}, n = {n:.3g}" if law != "Gidaspow" else "Gidaspow, Ergun below eps = 0.8"
-        ours.append(Curve(name, numbers["phi"], numbers["w"]))
+        ours.append(Curve(name, got["phi"], got["w"]))
         references.append(Curve(name, fine, expected(law, where, form, fine)))
         if law == "Gidaspow":
-            off = numbers["w"] / expected(law, where, form, numbers["phi"]) - 1.0
-            errors.append(misfit(f"{law}: largest relative difference", float(np.abs(off).max()), "-", CLOSE))
+            off = got["w"] / expected(law, where, form, got["phi"]) - 1.0
+            numbers[f"{law}: largest relative difference"] = float(np.abs(off).max())
         else:
-            off = np.log(numbers["w"]) / np.log1p(-numbers["phi"]) - n
-            errors.append(misfit(f"{law}: largest error of n", float(np.abs(off).max()), "-", CLOSE))
-    return comparison(
-        f"{where}-{form}", f"{RANGES[where].words}, buoyancy {form}",
-        Source(
-            "w = w_0 (1 - phi)^n, n = 1 - p + (q + A)/a of drag eps^-q F_0(eps^p w/eps), F_0 ~ w^a, A = 1 "
-            "with the buoyancy of the mixture"
-        ),
-        Axis("concentration phi"), Axis("w/w_0", log=True), ours, references, errors,
-        {"suspension": "lattice of 128 grains in a closed column"},
-        "Water returns past the grains, so w decreases with phi even without hindrance.",
-    )  # fmt: skip
-
-
-CLOSE = at_most(
-    0.002, "the last exchange was up to 5 steps before, and exp(-10) remains after 10 response times"
-)
+            off = np.log(got["w"]) / np.log1p(-got["phi"]) - n
+            numbers[f"{law}: largest error of n"] = float(np.abs(off).max())
+    return DECLARED["{where}-{form}"].finding(
+        ours, references, {"off": numbers}, where=where, form=form, range=RANGES[where].words
+    )

@@ -8,27 +8,17 @@ import numpy as np
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws import drag
 from ryusa.laws.families import Drag, Profile
 from ryusa.model import Water
 from ryusa.model.arrays import Floats
 from ryusa.model.scene import EventRule
-from ryusa.study import (
-    Band,
-    Finding,
-    Found,
-    Known,
-    Plan,
-    Source,
-    Task,
-    at_most,
-    calculation,
-    comparison,
-    misfit,
-)
+from ryusa.study import Finding, Found, Plan, Task, calculation
+from ryusa_studies.validation.declared import declared
 
 TITLE = "One grain falls in still water"
+DECLARED = declared(__file__)
 RATIO, G, NU = 1.65, 9.81, 1.0e-6  # quartz in water: [-], [m/s2], [m2/s]
 DEFAULT = "Schiller-Naumann"  # of spheres
 WATER_20 = (998.2, 1.004e-6)  # water of 20 deg C [kg/m3], [m2/s]
@@ -51,7 +41,6 @@ FIELD: Mapping[str, Callable[[float], float]] = {
         RATIO, G, d, NU, 18.0, 1.0
     ),
 }
-D, W = Axis("diameter", "mm", log=True), Axis("terminal velocity", "m/s", log=True)
 
 
 def root(c_d: Callable[[float], float], d: float, ratio: float = RATIO, nu: float = NU) -> float:
@@ -114,57 +103,34 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     del plan
     ours = {law: found[_call(law)]["w"] for law in LAWS}
     mm = 1e3 * np.array(SIZES)
-    roots = comparison(
-        "drag-laws", "Terminal velocity with every drag law",
-        Source("root of C_D(Re) w^2 = (4/3) (rho_s/rho - 1) g d"), D, W,
+    roots = DECLARED["drag-laws"].finding(
         [Curve(law, mm, w) for law, w in ours.items()],
         [Curve(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
-        [
-            misfit(
-                f"{law}: largest relative difference",
-                max(abs(w / root(LAWS[law][1], d) - 1.0) for d, w in zip(SIZES, speeds, strict=True)), "-",
-                at_most(1e-7, "20 response times after rest: exp(-20), and round-off"),
-            )
-            for law, speeds in ours.items()
-        ],
-        {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
-        "The balance of forces is a fixed point of the scheme, whatever the time step.",
+        {
+            "difference": {
+                law: max(abs(w / root(LAWS[law][1], d) - 1.0) for d, w in zip(SIZES, speeds, strict=True))
+                for law, speeds in ours.items()
+            },
+        },
     )  # fmt: skip
     shown = ("Schiller-Naumann", "Ferguson-Church sphere", "Ferguson-Church sand")
     law_of = {"Soulsby 1997, natural sand": shown[2], "Dietrich 1982, nearly round": shown[0]}
-    field = comparison(
-        "field", "Drag laws and settling formulae for natural sand",
-        Source(
-            "Soulsby 1997; Dietrich 1982 without shape; Ferguson & Church 2004: fits to measured sand",
-            Known.QUOTED,
-        ),
-        D, W, [Curve(law, mm, ours[law]) for law in shown],
+    field = DECLARED["field"].finding(
+        [Curve(law, mm, ours[law]) for law in shown],
         [Curve(name, 1e3 * FINE, np.array([w(float(d)) for d in FINE])) for name, w in FIELD.items()],
-        [
-            misfit(
-                f"{law} against {name}: largest relative difference",
-                max(abs(w / FIELD[name](d) - 1.0) for d, w in zip(SIZES, ours[law], strict=True)),
-            )
-            for name, law in law_of.items()
-        ],
-        {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
-        "Natural grains are not spheres, and the formulae for them differ from each other by as much; to "
-        "choose a drag law for sand is to choose a shape.",
+        {
+            "difference": {
+                f"{law} against {name}":
+                max(abs(w / FIELD[name](d) - 1.0) for d, w in zip(SIZES, ours[law], strict=True))
+                for name, law in law_of.items()
+            },
+        },
     )  # fmt: skip
     seen = found[_measured()]["w"]
     known = [gibbs(d, 1000.0 * (RATIO + 1.0), *WATER_20) for d in MEASURED]
-    spheres = comparison(
-        "spheres", "Spheres of quartz settle as measured, by the default drag",
-        Source("Gibbs, Matthews & Link 1971: fit to glass spheres of 0.05 to 5 mm in water", Known.QUOTED),
-        D, W, [Curve(DEFAULT, 1e3 * np.array(MEASURED), seen)],
+    spheres = DECLARED["spheres"].finding(
+        [Curve(DEFAULT, 1e3 * np.array(MEASURED), seen)],
         [Curve("Gibbs et al.", 1e3 * FINE, np.array([gibbs(d, 2650.0, *WATER_20) for d in FINE]))],
-        [
-            misfit(
-                f"d = {1e3 * d:g} mm: over the measured velocity, less 1", w / one - 1.0, "-",
-                Band(-0.05, 0.05, "-", "standard curves of the drag of spheres differ by as much"),
-            )
-            for d, one, w in zip(MEASURED, known, seen, strict=True)
-        ],
-        {"density": "2650 kg/m3", "water": "20 deg C: 998.2 kg/m3, 1.004e-6 m2/s", "g": "9.81 m/s2"},
+        {"mm": {f"{1e3 * d:g}": w / one - 1.0 for d, one, w in zip(MEASURED, known, seen, strict=True)}},
     )  # fmt: skip
     return [roots, field, spheres]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.cases import case_path
-from ryusa.figures.comparison import Axis, Curve
+from ryusa.figures.comparison import Curve
 from ryusa.laws import debris
 from ryusa.laws import transport as laws
 from ryusa.measure import transport, water
@@ -19,25 +19,22 @@ from ryusa.study import (
     Finding,
     Found,
     Interval,
-    Known,
     Level,
     Plan,
-    Source,
     Task,
-    at_most,
     case_run,
-    comparison,
     exact,
     largest_mean,
-    misfit,
     not_negative,
     over_seeds,
     pool_alike,
     transformed,
 )
+from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.sampling import SAMPLING
 
 TITLE = "Sediment transport rate over bed shear stress"
+DECLARED = declared(__file__)
 SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
 DEEP = {0.07: {"build.layers": "14", "build.length": "4.5 cm"}}  # fewer would move down to the last one
 QUICK = {"motion.slope": "0.0248", "record.settle": "1 s"}
@@ -166,34 +163,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for t, one, thick, s, r in zip(stress, q, layer, drift, rest, strict=True)
     )
     return [
-        comparison(
-            "rate", "Transport rate from the threshold to sheet flow",
-            Source(
-                "8 (tau_star - 0.047)^1.5; 3.97 (tau_star - 0.0495)^1.5; 17 (tau_star - 0.05) "
-                "(tau_star^0.5 - 0.05^0.5): fits to flume data, as in public codes", Known.QUOTED,
-            ),
-            Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Curve("grains", stress, rates)],
+        DECLARED["rate"].finding(
+            [Curve("grains", stress, rates)],
             [Curve(name, FINE, one) for name, one in formulae(FINE).items()],
-            [
-                misfit(
-                    "largest factor outside the formulae", made.worst, "-",
-                    at_most(
-                        1.0, "between the formulae: they differ by a factor of 3, which is the tolerance"
-                    ),
-                ),
-                misfit("geometric mean of the rate over that of the formulae", made.middle),
-                misfit("scatter about that mean, as a factor", made.scatter),
-            ],
-            {
-                "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.5, no dashpot "
-                "along the contact",
-                "slopes": ", ".join(f"{math.tan(one):.3g}" for one in slope),
-                "depth": ", ".join(f"{one:.0f} d" for one in depth),
-                "runs of a slope": f"{q.shape[1]}",
-            },
-            "tau_star is the stress of the clear water, extrapolated to the height where the "
-            f"concentration is half that of the bed at rest (docs/theory.md); judged from {JUDGED} "
-            f"upwards. {moved}.",
+            {"factor": made.worst, "middle": made.middle, "scatter": made.scatter},
             [Curve("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
+            tan=", ".join(f"{math.tan(one):.3g}" for one in slope),
+            one=", ".join(f"{one:.0f} d" for one in depth), shape=q.shape[1], judged=JUDGED, moved=moved,
         )
     ]  # fmt: skip

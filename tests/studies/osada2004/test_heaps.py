@@ -172,7 +172,7 @@ def test_every_heap_of_the_full_level_can_be_read():
 
 def spun(plan, spin, taken=0.05):
     """Saltating grains: spin(chosen) with Eq. (13) over 1000 rad/s without, and heaps."""
-    found = {eq13._heap_run(limit, seed): heap(20.0) for limit in eq13.MODELS for seed in plan.seeds}
+    found = {eq13._heap_run(limit, seed): heap(20.0) for limit in eq13.LIMITS for seed in plan.seeds}
     for chosen in eq13.settings(plan):
         for seed in plan.seeds:
             found[eq13.without(chosen, seed)] = eq13.SpinningGrain(1000.0, 0.0)
@@ -194,10 +194,10 @@ def test_a_moment_that_slows_the_spin_and_takes_energy_resists_rotation():
 
 def test_the_limit_that_makes_a_moment_resist_is_named():
     (finding,) = eq13.judge(
-        spun(STANDARD, lambda chosen: 600.0 if chosen[eq13.LIMIT] == eq13.LIMITED else 1100.0), STANDARD
+        spun(STANDARD, lambda chosen: 600.0 if chosen[eq13.LIMIT] == eq13.LIMITS[1] else 1100.0), STANDARD
     )
     assert finding.outcome is Outcome.ONLY_IF
-    assert eq13.LIMITED in finding.condition
+    assert eq13.LIMITS[1] in finding.condition
 
 
 def test_a_law_that_ends_the_run_fails_with_a_note():

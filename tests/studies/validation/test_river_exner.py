@@ -79,4 +79,4 @@ def test_every_case_of_the_full_level_can_be_read() -> None:
         assert case.water.row is not None
         assert case.water.row.segments == round(case.build.length / exner.SEGMENT)  # pyright: ignore
     assert not exner.tasks(Plan(Level.STANDARD, (1,)))
-    assert math.isinf(exner.bands.EXNER_CELERITY["rapid"].low)
+    assert math.isinf(exner.DECLARED["bed-wave-celerity"].band("celerity-rapid").low)  # pyright: ignore

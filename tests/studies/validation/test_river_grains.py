@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.study import CaseRun, Level, Outcome, Plan
-from ryusa_studies.validation import river_bands, river_grains
+from ryusa_studies.validation import river_grains
 
 PLAN = Plan(Level.FULL, (1,))
 Z = np.linspace(0.0, 0.02, 20)
@@ -20,7 +20,7 @@ def results(of_row=1.0, scatter=0.01, w=1.0, moved=1e-5):
             found[task] |= {"moved": np.array(moved), "moving": np.array(3), "median": np.array(1e-6)}
             continue
         factor = of_row if dict(task.arguments)["segments"] > 1 else 1.0
-        means = {name: factor + scatter * rng.normal(size=1) for name in river_bands.REACH_ERROR}
+        means = {name: factor + scatter * rng.normal(size=1) for name in river_grains.REACH}
         found[task] = {"z": Z, "u": Z, "phi": Z, "residual": np.array(1e-12), **means}
     return found
 
