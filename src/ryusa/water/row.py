@@ -89,7 +89,7 @@ class RowArrays:
     ends: RowEnds
     work: StationArrays
     pressure: PressureArrays | None = None
-    nappe: NappeArrays | None = None  # then the others are of the opened row
+    nappe: NappeArrays | None = None  # with a pressure of its own; the others are of the opened row
 
     @staticmethod
     def of(row: ColumnRow) -> "RowArrays":

@@ -25,10 +25,13 @@ LANDED, BEYOND, STRIKES = range(3)  # what becomes of a parcel; the last two are
 
 
 def nappes_of(row: ColumnRow, shape: RowShape) -> NappeArrays | None:
-    """Arrays for the opened shape of a row; None without aerated sills."""
-    air = air_of(row)
-    if not len(air):
+    """Arrays for the opened shape of a row with a pressure of its own, aerated sills or not; else None.
+
+    A row without such a sill takes the same compiled step as one with: its lists are empty.
+    """
+    if row.hydrostatic:
         return None
+    air = air_of(row)
     n_all, n = len(shape.bottom), row.column.n
     is_air = np.zeros(n_all, np.int64)
     is_air[air] = 1
@@ -210,6 +213,8 @@ def throw(
     -------
     what : LANDED, or the fault of a parcel of the sill whose last segment is the second number.
     """
+    if len(nappe.air) == 0:
+        return LANDED, 0
     nappe.lands[:], nappe.along[:], nappe.upwards[:] = 0.0, 0.0, 0.0
     for s in range(len(nappe.air)):
         j = nappe.air[s] - 1
@@ -259,7 +264,7 @@ def give_momentum(
     `force` [N/m3] is what the stations are given as that of grains. Where one of both is a wall or closed at
     that height the other takes all.
     """
-    if nappe is None:
+    if nappe is None or len(nappe.air) == 0:
         return
     nappe.given[:] = 0.0
     for i in range(shape.inner[0], shape.inner[1]):
@@ -289,7 +294,7 @@ def book_nappes(
     To be called with the predicted speeds, of which `w` are those at the faces. What W carries over a sill is
     a FALL already. In `out` the momentum goes from the grains to what the flow brings.
     """
-    if nappe is None:
+    if nappe is None or len(nappe.air) == 0:
         return
     weight, energy, fall = p.rho_w * shape.g_z, work.energy, 0.0
     for s in range(len(nappe.air)):

@@ -260,7 +260,7 @@ def advance_row(
         them, with a leading axis of stations.
     scalars : receives FAULT_AT (segment or station), STEPS, COURANT_MET and TURNS, shape (N_SCALARS,).
     pressure : state and work arrays of a pressure of its own; None, which compiles without it: hydrostatic.
-    nappe : of an opened row with a pressure of its own; None likewise.
+    nappe : of the opened row with a pressure of its own; None with a hydrostatic one.
 
     Returns
     -------
