@@ -85,8 +85,7 @@ QUESTIONS = (
     ),
     CaseQuestion(
         "How deep is the scour under a jet or at a pier?", (), (),
-        "not to be had: the jet below an aerated dam may fall on a bed (ryusa measure RUN scour), but spreads "
-        "too soon and scours far too little; and a row has no flow round a pier",
+        "not to be had: a jet below an aerated dam digs too little; a row has no flow round a pier",
     ),
     CaseQuestion(
         "What is the angle of repose of my material?",
