@@ -5,7 +5,7 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.contact.values import is_hertz, timing
+from ryusa.casefile.contact.values import timing
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.record.schema import RecordSection
 from ryusa.casefile.record.values import MANY, events_of
@@ -28,13 +28,6 @@ MEMORY_IN_COLUMN = 850  # of a grain on top, in a column of water
 MEMORY_PER_CONTACT = 100
 MEMORY_WITH_TIMING = 100  # of a contact on top, where contacts begin and end within steps
 WRITING = 2.1  # copies of a part while it is written: HDF5 in memory, and its bytes
-# A checkpoint on the disk [B]:
-CHECKPOINT_PER_GRAIN = 130
-CHECKPOINT_IN_COLUMN = 150  # of a grain on top
-CHECKPOINT_PER_CONTACT = 96
-CHECKPOINT_WITH_ROLLING = 48  # of a contact on top, where there is rolling friction
-CHECKPOINT_WITH_TIMING = 8  # where contacts begin and end within steps
-CHECKPOINT_WITH_HERTZ = 8  # of a contact of elastic spheres
 HELD_MOST = 64 << 20  # frames and contacts that wait to be written
 FASTER = 3.0  # than the rule of thumb: so much sooner may frames come
 HELD_SHORTEST, HELD_SHARE, HELD_LONGEST = 2.0, 0.01, 60.0  # s, of the time so far, s: as the recorder flushes
@@ -110,22 +103,6 @@ def memory_of_grains(
     each = MEMORY_PER_GRAIN + (MEMORY_IN_COLUMN if column else 0)
     contact = MEMORY_PER_CONTACT + (MEMORY_WITH_TIMING if timed is ContactTiming.EXACT else 0)
     return n_grain * (each + contacts * contact) + n_fixed * MEMORY_PER_FIXED
-
-
-def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
-    """Bytes of a checkpoint of free grains with so many contacts each."""
-    column = case.water is not None and case.water.profile == "column"
-    each = CHECKPOINT_PER_GRAIN + (CHECKPOINT_IN_COLUMN if column else 0)
-    contact = CHECKPOINT_PER_CONTACT
-    contact += BYTES_PER_EVENT if events_of(case) != "none" else 0
-    contact += (
-        CHECKPOINT_WITH_ROLLING
-        if case.rolling.model != "none" or case.rolling.twisting_coefficient > 0.0
-        else 0
-    )
-    contact += CHECKPOINT_WITH_TIMING if timing(case) is ContactTiming.EXACT else 0
-    contact += CHECKPOINT_WITH_HERTZ if is_hertz(case.contact) else 0
-    return n_grain * (each + contacts * contact)
 
 
 def held_back(case: Case, derived: Derived) -> float:

@@ -85,11 +85,6 @@ class Profiles(Averaged):
             self.temperature_z, self.flux,
         )  # fmt: skip
 
-    @property
-    def mass_flux(self) -> Floats:
-        """Mass of grains that crosses a unit of area in a second [kg/(m2 s)], shape (n_layer,)."""
-        return self.density * self.flux.value
-
     def top(self, share: float = 0.99) -> float:
         """Height below which so large a share of all grain volume lies [m]."""
         below = np.cumsum(self.phi.value)

@@ -254,7 +254,6 @@ class Budget:
     grains: float  # force of the free grains
     carried: float  # part of the stress gradient that acts on the grains, with buoyancy `stress`
     surface: float  # momentum of water that passed through the surface
-    iterations: int  # of Newton's method
     fixed: float = 0.0  # force of the fixed grains
 
     @property
