@@ -12,7 +12,7 @@ from ryusa.measure.bed_area import area_of
 from ryusa.measure.layers import Layers, layers_mean, layers_quotient
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
@@ -93,18 +93,13 @@ class ContactStress(Averaged):
             ("contact_xz_Pa", self.contact_xz), ("p_Pa", self.p), ("mu", self.mu),
             *((f"fabric_{one}", getattr(self, f"fabric_{one}")) for one in ("xx", "zz", "xz")),
         )  # fmt: skip
-        return [
-            dict[str, object](z_m=float(z))
-            | {name: float(one.value[k]) for name, one in columns}
-            | {f"{one.name}_error": float(one.error[k]) for _, one in columns}
-            | {
-                "shear_rate_per_s": float(self.shear_rate[k]),
-                "inertial_number": float(self.inertial_number[k]),
-                "weight_above_Pa": float(self.weight[k]),
-                "weight_above_along_Pa": float(self.weight_along[k]),
-            }
-            for k, z in enumerate(self.z)
-        ]
+        of_layers = {"z_m": self.z} | {name: one.value for name, one in columns}
+        of_layers |= {f"{one.name}_error": one.error for _, one in columns}
+        of_layers |= {
+            "shear_rate_per_s": self.shear_rate, "inertial_number": self.inertial_number,
+            "weight_above_Pa": self.weight, "weight_above_along_Pa": self.weight_along,
+        }  # fmt: skip
+        return lines(of_layers)
 
 
 def contact_stress(

@@ -43,10 +43,6 @@ class Spin(Averaged):
         """Ids of so many grains that travelled farthest along x up to the last frame, in that order."""
         return [int(g) for g in np.argsort(-np.abs(self.distance[-1]), kind="stable")[:count]]
 
-    def rows(self) -> list[dict[str, object]]:
-        """One dictionary per average."""
-        return self.averages.rows()
-
     def series(self) -> list[dict[str, object]]:
         """One dictionary per frame and grain."""
         return [

@@ -16,7 +16,7 @@ from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.slices_in_layers import CHUNK, U_X, cut_by_layers, sums_in_layers
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import Average, average, begin_in_words, ratio, standard_errors
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.water import water
 from ryusa.model import Scene
 from ryusa.printed import ByShape
@@ -64,10 +64,7 @@ class Transport(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per time between two frames."""
-        return [
-            {"t_s": float(t), "dt_s": float(dt), "q_m2_per_s": float(q), "q_star": float(s)}
-            for t, dt, q, s in zip(self.t, self.dt, self.q, self.q_star, strict=True)
-        ]
+        return lines({"t_s": self.t, "dt_s": self.dt, "q_m2_per_s": self.q, "q_star": self.q_star})
 
 
 @dataclass(frozen=True, repr=False)
