@@ -39,7 +39,7 @@ EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 
 
 def frames_expected(case: Case) -> int:
     """Frames of the run at most, or by guess where only events end it."""
-    return math.floor(time_expected(case)[0] / case.record.frames) + 2
+    return math.floor(time_expected(case.stop, case.record)[0] / case.record.frames) + 2
 
 
 def bytes_per_grain(record: RecordSection) -> int:
@@ -61,7 +61,7 @@ def events_expected(case: Case, derived: Derived) -> int:
     dense = isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection | FillSection)
     if (dense or case.feeds) and derived.meet:
         rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
-    return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
+    return 0 if kept == "none" else math.ceil(n * rate * time_expected(case.stop, case.record)[0])
 
 
 def disk_for_events(case: Case, derived: Derived) -> int:
@@ -135,7 +135,7 @@ def memory_needed(case: Case, derived: Derived) -> int:
 
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Steps, frames, disk, memory and wall time."""
-    simulated, origin = time_expected(case)
+    simulated, origin = time_expected(case.stop, case.record)
     disk, took = disk_needed(case, derived), wall_time(case, derived)
     memory, contacts = memory_needed(case, derived), contacts_expected(case, derived)
     alone = water_alone(case)
@@ -151,7 +151,7 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     )
     return [
         number("cost", "simulated time", simulated, "s", origin),
-        count("cost", "steps", steps_expected(case, derived), "simulated time over dt"),
+        count("cost", "steps", steps_expected(case.stop, case.record, derived), "simulated time over dt"),
         count("cost", "frames", frames_expected(case), f"one every {case.record.frames:g} s (record.frames)"),
         _size(
             "disk for frames",
