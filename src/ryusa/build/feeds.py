@@ -100,7 +100,7 @@ def _reaching(scene: Scene, traffic: Traffic, by_default_low: bool, by_default_h
     every = [one.point if one.is_plane else corner for one in traffic.exits for corner in (one.low, one.high)]
     if not every:
         return scene
-    room = _BEYOND * float(np.concatenate([scene.d, scene.d_fixed]).max())
+    room = _BEYOND * scene.d_max
     low, high = np.min(every, axis=0) - room, np.max(every, axis=0) + room
     if by_default_low:
         x, y, z = np.minimum(low, scene.world_low).tolist()

@@ -64,7 +64,7 @@ def refuse_fast_walls(case: Case, scene: Scene) -> None:
     """Raise a `CaseError` for a wall that goes so far in a step that it could pass through a grain."""
     if scene.walls is None or not len(scene.d) + len(scene.d_fixed):
         return
-    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min())
+    smallest = scene.d_min
     most = MOST_STEP * smallest / scene.dt
     _refuse_faster(scene, most, {name: f"walls.{w}" for w, name in enumerate(scene.walls.names)})
     for key, entry, after in replay(case, scene):

@@ -134,7 +134,7 @@ def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
     if not walls:
         return scene
     split = [replace(wall, **_split(wall, scene.period, f"walls.{k}")) for k, wall in enumerate(walls)]
-    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    largest = scene.d_max
     for k, wall in enumerate(split):
         refuse_wide_round_faces(wall.face, wall.kind, scene.period, largest, f"walls.{k}")
     count = [len(wall.kind) for wall in split]

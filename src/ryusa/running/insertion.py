@@ -49,7 +49,7 @@ class Neighbours:
         reach : how far beyond the feed a centre may be placed [m].
         t : time [s].
         """
-        largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
+        largest = scene.d_max
         low, high = corners(feed)
         if (carrier := carrier_of(scene, feed.wall, t)) is not None:
             every = carrier.place(corners_of_box(low, high))

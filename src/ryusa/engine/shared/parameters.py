@@ -35,8 +35,7 @@ def parameters_of(scene: Scene) -> Floats:
         ROLLING_ZETA: rolling.zeta_r,
         OVERLAP_LIMIT: scene.overlap_limit,
         # largest displacement of a grain in one step [m]
-        DISPLACEMENT_LIMIT: LARGEST_DISPLACEMENT
-        * float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf)),
+        DISPLACEMENT_LIMIT: LARGEST_DISPLACEMENT * scene.d_min,
         PERIOD_X: scene.period[0],
         PERIOD_Y: scene.period[1],
         G_X: scene.gravity[0],
