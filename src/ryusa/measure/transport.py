@@ -88,17 +88,12 @@ class KineticStress(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per layer."""
-        columns = [("temperature_m2_per_s2", self.temperature)]
-        columns += [(f"stress_{one.name}_Pa", one) for one in (self.xx, self.yy, self.zz, self.xz)]
+        layers = {"temperature_m2_per_s2": self.temperature}
+        layers |= {f"stress_{one.name}_Pa": one for one in (self.xx, self.yy, self.zz, self.xz)}
         z, d = self.profiles.z, self.profiles.d
-        return [
-            dict[str, object](
-                z_m=float(z[k]), z_over_d=float(z[k]) / d, phi=float(self.profiles.phi.value[k])
-            )
-            | {name: float(one.value[k]) for name, one in columns}
-            | {f"{name}_error": float(one.error[k]) for name, one in columns}
-            for k in range(len(z))
-        ]
+        columns = {"z_m": z, "z_over_d": z / d, "phi": self.profiles.phi.value}
+        columns |= {name: one.value for name, one in layers.items()}
+        return lines(columns | {f"{name}_error": one.error for name, one in layers.items()})
 
 
 def transport(
