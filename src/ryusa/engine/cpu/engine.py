@@ -234,9 +234,7 @@ class CpuEngine:
         grains.impulse[:] = 0.0
 
     def set_walls(self, motion: Floats) -> None:
-        """Set the motion of the walls from this step on (model.walls), shape (n_wall, N_MOTION).
-
-        Walls are where they were, and no faster than the scene says; a snapshot does not carry the motion.
+        """Set the motion of the walls from this step on, as `Engine.set_walls`.
 
         Raises
         ------
