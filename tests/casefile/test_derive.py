@@ -156,7 +156,7 @@ def test_contacts_to_record_are_counted_before_the_run(case: CaseOf) -> None:
 def test_frames_and_bytes_are_counted_before_the_run(case: CaseOf) -> None:
     one = case(**{"stop.time": "1 s", "record.frames": "1 ms"})
     assert frames_expected(one) in (1001, 1002)
-    assert steps_expected(one, derive(one)) == math.ceil(1.0 / derive(one).dt)
+    assert steps_expected(one.stop, one.record, derive(one)) == math.ceil(1.0 / derive(one).dt)
     long = case(**{"stop.time": "1e5 s", "record.frames": "10 us"})
     assert disk_needed(long, derive(long)) > 10e9
 

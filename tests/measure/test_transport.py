@@ -203,6 +203,7 @@ def test_motion_during_a_single_frame_counts_on_request(ride):
     plan = [[0, 1, 0, 1, 1, 0, 0, 1]]
     found = entrainment(ride(paced(plan)), speed=0.05, duration=0.0)
     np.testing.assert_array_equal(found.started, [1, 0, 1, 0, 0, 0, 1])
+    assert [repr(row["started"]) for row in found.rows()] == ["1", "0", "1", "0", "0", "0", "1"]
     np.testing.assert_array_equal(found.stopped, [0, 1, 0, 0, 1, 0, 0])
 
 

@@ -37,9 +37,12 @@ from ryusa.build.walls import SolidWall, walls_of, with_room, with_walls
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import derive
+from ryusa.casefile.domain import PlaneSection
 from ryusa.casefile.facts import Derived
+from ryusa.casefile.record.schema import ChangeSection
 from ryusa.casefile.shape import extent
 from ryusa.casefile.unstated import unstated_notes
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.casefile.without_effect import notes_without_effect
 from ryusa.errors import CaseError
 from ryusa.model import Scene, State
@@ -93,14 +96,14 @@ def build(case: Case, derived: Derived | None = None) -> Built:
 
 def _built(case: Case, found: Derived) -> Built:
     placement = BUILDERS[case.build.kind](case, found)
-    placement = _with_planes(placement, case)
+    placement = _with_planes(placement, case.planes)
     key = key_of(case.build)
     reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
     refuse_overlaps(reach, key, case.motion.plane)
-    walls = (*walls_of(case), *stream_walls(case))
+    walls = (*walls_of(case.folder, case.walls), *stream_walls(case))
     _refuse_taken_names(placement, walls)
     refuse_overlaps_with_walls(reach, walls, key)
-    _refuse_unknown_groups(placement, case)
+    _refuse_unknown_groups(placement, case.walls, case.timeline)
     laws = replace(
         laws_of(case, found, placement.z_zero),
         flow=row_of(case, found, placement) or column_of(case, found, placement),
@@ -140,8 +143,8 @@ def _built(case: Case, found: Derived) -> Built:
     return Built(scene, state, said)
 
 
-def _with_planes(placement: Placement, case: Case) -> Placement:
-    walls = tuple(Wall(plane.name, plane.point, plane.normal) for plane in case.planes)
+def _with_planes(placement: Placement, planes: tuple[PlaneSection, ...]) -> Placement:
+    walls = tuple(Wall(plane.name, plane.point, plane.normal) for plane in planes)
     taken = {
         *(wall.name for wall in placement.walls),
         "grains",
@@ -165,10 +168,12 @@ def _refuse_taken_names(placement: Placement, walls: Sequence[SolidWall]) -> Non
             )
 
 
-def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
+def _refuse_unknown_groups(
+    placement: Placement, walls: tuple[WallSection, ...], timeline: tuple[ChangeSection, ...]
+) -> None:
     known = [name for name, (first, _) in placement.groups().items() if first >= len(placement.d)]
-    known += [wall.name for wall in case.walls]
-    for number, entry in enumerate(case.timeline):
+    known += [wall.name for wall in walls]
+    for number, entry in enumerate(timeline):
         if entry.remove is not None and entry.remove not in known:
             there = ", ".join(known) or "there is none"
             allowed = f"must be a group of fixed grains, a plane or a wall: {there}"

@@ -65,20 +65,15 @@ def expanded(
     state: State,
     forms: Sequence[Clump],
     *,
-    form_of: ArrayLike | None = None,
-    orientation: ArrayLike | None = None,
-    names: Sequence[str] = (),
+    form_of: ArrayLike | None,
+    orientation: ArrayLike | None,
+    names: Sequence[str],
 ) -> tuple[Scene, State]:
     """As `with_clumps`, with the time step of the scene."""
     n = scene.n_grain
     if scene.bodies is not None or len(state.contacts) or state.step:
         raise CaseError("state", f"step {state.step}", "must be the start of a run without clumps")
-    which = np.zeros(n, np.int64) if form_of is None else np.array(form_of, np.int64)
-    if which.shape != (n,) or which.min(initial=0) < -1 or which.max(initial=0) >= len(forms):
-        raise CaseError("form_of", which.shape, f"must hold -1 to {len(forms) - 1} for each of {n} grains")
-    q = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)) if orientation is None else np.array(orientation, np.float64)
-    if q.shape != (n, 4) or not (np.linalg.norm(q, axis=1) > 0.0).all():
-        raise CaseError("orientation", q.shape, f"must hold a quaternion for each of {n} grains")
+    which, q = _checked(n, len(forms), form_of, orientation)
     made = np.flatnonzero(which >= 0)
     count = np.ones(n, np.int64)
     count[made] = [len(forms[k].d) for k in which[made]]
@@ -132,6 +127,19 @@ def expanded(
     if len(state.present):
         arrays["present"] = state.present[owner]
     return scene, replace(state, bodies=moved, **{name: read_only(array) for name, array in arrays.items()})
+
+
+def _checked(
+    n: int, n_form: int, form_of: ArrayLike | None, orientation: ArrayLike | None
+) -> tuple[Ints, Floats]:
+    """Number of the form (n,) and orientation (n, 4) of each of n grains, as `with_clumps` takes them."""
+    which = np.zeros(n, np.int64) if form_of is None else np.array(form_of, np.int64)
+    if which.shape != (n,) or which.min(initial=0) < -1 or which.max(initial=0) >= n_form:
+        raise CaseError("form_of", which.shape, f"must hold -1 to {n_form - 1} for each of {n} grains")
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)) if orientation is None else np.array(orientation, np.float64)
+    if q.shape != (n, 4) or not (np.linalg.norm(q, axis=1) > 0.0).all():
+        raise CaseError("orientation", q.shape, f"must hold a quaternion for each of {n} grains")
+    return which, q
 
 
 def _traffic(traffic: Traffic | None, new_id: Callable[[int], int]) -> Traffic | None:

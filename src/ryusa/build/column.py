@@ -15,6 +15,7 @@ from ryusa.casefile.column.schema import CELL
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.grains.values import slab_width
 from ryusa.casefile.row.values import stream, water_alone
+from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
@@ -23,12 +24,11 @@ from ryusa.model import Column
 MOST_CELLS = 100_000
 
 
-def zero_of(case: Case, z_zero: float) -> float:
+def zero_of(water: WaterSection | None, z_zero: float) -> float:
     """Height of the zero of the water [m]; `z_zero` is the builder's.
 
     A fixed bed is the bottom of a column, and whichever of the two the case gives sets both.
     """
-    water = case.water
     if water is None or water.zero is not None:
         return z_zero if water is None or water.zero is None else water.zero
     keys = water.column
@@ -49,7 +49,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
         return None
     assert water.depth is not None
     keys = case.column
-    z_bed = zero_of(case, placement.z_zero)
+    z_bed = zero_of(case.water, placement.z_zero)
     dz = keys.cell or CELL * found.d
     z_low = keys.bottom if keys.bottom is not None else min(bottom_of(placement), z_bed)
     if keys.bed != "moving":

@@ -16,6 +16,7 @@ from ryusa.casefile.feeds.values import fed_amount, fed_count, feed_begin, feed_
 from ryusa.casefile.grains.values import mass, sized_as
 from ryusa.casefile.materials.values import of_material
 from ryusa.casefile.row.reach_source import fed_by_reach
+from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic
 from ryusa.model.feeds import NONE
@@ -36,7 +37,7 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
     ------
     CaseError : the builder already uses the name of a feed.
     """
-    if not case.feeds and not case.exits and not fed_by_reach(case):
+    if not case.feeds and not case.exits and not fed_by_reach(case.row):
         return placement, None
     taken = placement.groups()
     n_first = first = len(placement.d)
@@ -99,7 +100,7 @@ def _reaching(scene: Scene, traffic: Traffic, by_default_low: bool, by_default_h
     every = [one.point if one.is_plane else corner for one in traffic.exits for corner in (one.low, one.high)]
     if not every:
         return scene
-    room = _BEYOND * float(np.concatenate([scene.d, scene.d_fixed]).max())
+    room = _BEYOND * scene.d_max
     low, high = np.min(every, axis=0) - room, np.max(every, axis=0) + room
     if by_default_low:
         x, y, z = np.minimum(low, scene.world_low).tolist()
@@ -149,7 +150,7 @@ def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed
     common = Feed(
         keys.name, velocity=keys.velocity, rate=rate, by_mass=unit_of(case, keys) == "kg/s",
         begin=feed_begin(case, keys), end=feed_end(case, keys), first=first, count=count,
-        seed=seed_of_feed(case.seed, k), wall=_wall(case, keys),
+        seed=seed_of_feed(case.seed, k), wall=_wall(case.walls, keys),
         times=() if course is None else course.t, rates=() if course is None else course.y,
     )  # fmt: skip
     if keys.low is not None and keys.high is not None:
@@ -161,7 +162,7 @@ def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed
 
 def _exit(case: Case, keys: ExitSection) -> Exit:
     names = [feed.name for feed in case.feeds]
-    to, wall = -1 if keys.to is None else names.index(keys.to), _wall(case, keys)
+    to, wall = -1 if keys.to is None else names.index(keys.to), _wall(case.walls, keys)
     if keys.point is not None and keys.normal is not None:
         return Exit(keys.name, point=keys.point, normal=_unit(keys.normal), to=to, wall=wall)
     assert keys.low is not None
@@ -172,8 +173,8 @@ def _exit(case: Case, keys: ExitSection) -> Exit:
     return Exit(keys.name, low=low, high=high, to=to, wall=wall)
 
 
-def _wall(case: Case, keys: FeedSection | ExitSection) -> int:
-    return NONE if keys.moves_with is None else [one.name for one in case.walls].index(keys.moves_with)
+def _wall(walls: tuple[WallSection, ...], keys: FeedSection | ExitSection) -> int:
+    return NONE if keys.moves_with is None else [one.name for one in walls].index(keys.moves_with)
 
 
 def moving_with(scene: Scene) -> Scene:

@@ -92,7 +92,7 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
         profile=Profile.of(water.profile),
         u_star=0.0 if math.isnan(found.u_star) else found.u_star,
         k_rough=found.k_rough,
-        z_zero=zero_of(case, z_zero),
+        z_zero=zero_of(case.water, z_zero),
         u_uniform=water.speed or 0.0,
         depth=math.inf if water.depth is None else water.depth,
         above=Above.of(water.above),

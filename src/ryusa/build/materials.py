@@ -29,7 +29,7 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
         return np.zeros(0, np.int8)
     names = names_of(case.materials)
     of = np.zeros(len(placement.d) + len(placement.d_fixed) + len(placement.walls), np.int8)
-    for name, which in laid_materials(case, n_first):
+    for name, which in laid_materials(case.grains.mixture, case.seed, n_first):
         of[which] = names.index(name)
     made = made_of(case.build)
     for group, begin, n in placement.free_groups:

@@ -37,7 +37,7 @@ def refuse_passing_walls(case: Case, scene: Scene) -> tuple[str, ...]:
     moves = np.any([stage.walls.moving() for stage in stages], axis=0) & ~pressed
     if not moves.any():
         return ()
-    shapes, deep = shapes_of(walls), DEEP * float(np.concatenate([scene.d, scene.d_fixed]).min())
+    shapes, deep = shapes_of(walls), DEEP * scene.d_min
     points = [points_on(one, _BESIDE * deep) for one in shapes]
     notes, deep = list[str](), (1.0 - _BESIDE) * deep
     for a, b in combinations(np.flatnonzero(~pressed).tolist(), 2):

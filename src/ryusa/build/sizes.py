@@ -1,6 +1,7 @@
 """Random grain sizes, and sizes by quota of a sieve curve."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,12 @@ from ryusa.model.scene import Floats
 _STREAM = 0x4D415445  # tells the materials of grains from their sizes
 
 
-def laid_materials(case: Case, n: int) -> list[tuple[str, NDArray[np.int64]]]:
+def laid_materials(mixture: Mapping[str, float], seed: int, n: int) -> list[tuple[str, NDArray[np.int64]]]:
     """Which of the n grains that the builder lays are of each material of `grains.mixture`."""
-    drawn = np.random.default_rng([case.seed, _STREAM]).permutation(n)
+    drawn = np.random.default_rng([seed, _STREAM]).permutation(n)
     found: list[tuple[str, NDArray[np.int64]]] = []
     begin = 0.0
-    for name, share in case.grains.mixture.items():
+    for name, share in mixture.items():
         end = begin + share * n
         found.append((name, drawn[round(begin) : round(end)]))
         begin = end
@@ -31,7 +32,7 @@ def draw_laid(case: Case, n: int, rng: np.random.Generator) -> Floats:
     if not any(has_own_sizes(case.materials, name) for name in case.grains.mixture):
         return draw(case, n, rng)
     d, rest = np.zeros(n), np.ones(n, np.bool_)
-    for name, which in laid_materials(case, n):
+    for name, which in laid_materials(case.grains.mixture, case.seed, n):
         d[which], rest[which] = draw(sized_as(case, name), len(which), rng), False
     d[rest] = draw(case, int(rest.sum()), rng)
     return d

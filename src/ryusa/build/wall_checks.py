@@ -23,7 +23,7 @@ from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contact_law import rest_overlap_of, stiffness_key
 from ryusa.model.feeds import NONE
 from ryusa.model.wall_shape import WallsAt
-from ryusa.model.walls import ASKED, MOST_SPEED, MOST_TRAVEL, TOWARDS, Ints, face_boxes, largest_speed
+from ryusa.model.walls import ASKED, MOST_SPEED, MOST_TRAVEL, TOWARDS, Ints, across, face_boxes, largest_speed
 
 _TRIED = 200  # places of a grain in a feed
 _STREAM = 0x524F4F4D  # tells their random numbers from others
@@ -64,7 +64,7 @@ def refuse_fast_walls(case: Case, scene: Scene) -> None:
     """Raise a `CaseError` for a wall that goes so far in a step that it could pass through a grain."""
     if scene.walls is None or not len(scene.d) + len(scene.d_fixed):
         return
-    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min())
+    smallest = scene.d_min
     most = MOST_STEP * smallest / scene.dt
     _refuse_faster(scene, most, {name: f"walls.{w}" for w, name in enumerate(scene.walls.names)})
     for key, entry, after in replay(case, scene):
@@ -239,8 +239,7 @@ def _places(feed: Feed, plane_case: bool, d: float, rng: np.random.Generator) ->
     side = np.array([normal[2], 0.0, -normal[0]])
     if plane_case:
         return np.array(feed.centre) + reach * (2.0 * u[:, :1] - 1.0) * side
-    side = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    side /= np.linalg.norm(side)
+    side = across(normal)
     far, turn = reach * np.sqrt(u[:, :1]), 2.0 * math.pi * u[:, 1:2]
     return np.array(feed.centre) + far * (np.cos(turn) * side + np.sin(turn) * np.cross(normal, side))
 

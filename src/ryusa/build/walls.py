@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike
 from ryusa.build.placement import ROOM_BELOW
 from ryusa.build.servo import Servo, servo_rows
 from ryusa.build.wall_checks import refuse_wide_round_faces
-from ryusa.casefile.case import Case
 from ryusa.casefile.walls.mesh import mesh_of
 from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
@@ -134,7 +134,7 @@ def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
     if not walls:
         return scene
     split = [replace(wall, **_split(wall, scene.period, f"walls.{k}")) for k, wall in enumerate(walls)]
-    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    largest = scene.d_max
     for k, wall in enumerate(split):
         refuse_wide_round_faces(wall.face, wall.kind, scene.period, largest, f"walls.{k}")
     count = [len(wall.kind) for wall in split]
@@ -245,15 +245,15 @@ def _least_pieces(face: Floats, period: tuple[float, float]) -> float:
     return float(area / (0.5 * short[0] * short[1]))
 
 
-def walls_of(case: Case) -> tuple[SolidWall, ...]:
+def walls_of(folder: Path, walls: tuple[WallSection, ...]) -> tuple[SolidWall, ...]:
     """Walls of a case, meshes read from their files."""
-    return tuple(_wall_of(case, wall, f"walls.{k}") for k, wall in enumerate(case.walls))
+    return tuple(_wall_of(folder, wall, f"walls.{k}") for k, wall in enumerate(walls))
 
 
-def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
+def _wall_of(folder: Path, wall: WallSection, key: str) -> SolidWall:
     at = wall.at or (0.0, 0.0, 0.0)
     if wall.shape == "mesh":
-        made = triangles(wall.name, mesh_of(case.folder, wall, key).corners)
+        made = triangles(wall.name, mesh_of(folder, wall, key).corners)
     elif wall.sides is not None and wall.number is not None:
         made = ridges(wall.name, at, *wall.sides, wall.number, wall.height or 0.0)
     elif wall.sides is not None:

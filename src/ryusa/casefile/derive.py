@@ -55,19 +55,7 @@ def derive(case: Case) -> Derived:
         wet_limits = [step_limits(one, stiffness(one)[0], d, both) for one, d, both in pairs]
         wet_steps = min(one for one, _ in wet_limits), min(one for _, one in wet_limits)
         dt = _default_step(case, shortest, limits[1], wet_steps)
-    u_star, tau_star, k_rough, g = math.nan, math.nan, math.nan, case.motion.gravity
-    if case.water is not None:
-        wet, rho_s = case.water, case.grains.density
-        k_rough = wet.roughness if wet.roughness is not None else d
-        row = water_alone(case) or stream(case)  # its flow follows from its ends
-        driven = wet.profile == "column" and case.column.drive == "tau_star"
-        u_star = u_star_given(case)
-        if wet.tau_star is not None and not driven:
-            tau_star = wet.tau_star
-        elif (wet.profile == "column" and not row) or wet.u_star is not None:
-            u_star = column_u_star(case, k_rough) if math.isnan(u_star) or driven else u_star
-            heavier = rho_s > wet.density and g > 0.0
-            tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d) if heavier else math.nan
+    u_star, tau_star, k_rough = _shear_of_water(case, d)
     return Derived(
         d=d,
         d_min=d_min,
@@ -78,7 +66,7 @@ def derive(case: Case) -> Derived:
         m_added=m_added,
         m_weight=m_weight,
         inertia=inertia,
-        g=g,
+        g=case.motion.gravity,
         slope=slope(case.motion),
         k_n=k_n,
         k_s=k_s,
@@ -100,6 +88,27 @@ def derive(case: Case) -> Derived:
         tau_star=tau_star,
         k_rough=k_rough,
     )
+
+
+def _shear_of_water(case: Case, d: float) -> tuple[float, float, float]:
+    """Friction velocity [m/s], Shields number [-] and roughness [m] of the water; nan where it has none.
+
+    `d` is the mean diameter [m].
+    """
+    wet, rho_s, g = case.water, case.grains.density, case.motion.gravity
+    if wet is None:
+        return math.nan, math.nan, math.nan
+    k_rough = wet.roughness if wet.roughness is not None else d
+    row = water_alone(case) or stream(case)  # its flow follows from its ends
+    driven = wet.profile == "column" and case.column.drive == "tau_star"
+    u_star, tau_star = u_star_given(case), math.nan
+    if wet.tau_star is not None and not driven:
+        tau_star = wet.tau_star
+    elif (wet.profile == "column" and not row) or wet.u_star is not None:
+        u_star = column_u_star(case, k_rough) if math.isnan(u_star) or driven else u_star
+        if rho_s > wet.density and g > 0.0:
+            tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d)
+    return u_star, tau_star, k_rough
 
 
 def _default_step(case: Case, shortest: float, tangential: float, wet: tuple[float, float]) -> float:

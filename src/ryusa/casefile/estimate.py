@@ -5,7 +5,7 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.contact.values import is_hertz, timing
+from ryusa.casefile.contact.values import timing
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.record.schema import RecordSection
 from ryusa.casefile.record.values import MANY, events_of
@@ -28,13 +28,6 @@ MEMORY_IN_COLUMN = 850  # of a grain on top, in a column of water
 MEMORY_PER_CONTACT = 100
 MEMORY_WITH_TIMING = 100  # of a contact on top, where contacts begin and end within steps
 WRITING = 2.1  # copies of a part while it is written: HDF5 in memory, and its bytes
-# A checkpoint on the disk [B]:
-CHECKPOINT_PER_GRAIN = 130
-CHECKPOINT_IN_COLUMN = 150  # of a grain on top
-CHECKPOINT_PER_CONTACT = 96
-CHECKPOINT_WITH_ROLLING = 48  # of a contact on top, where there is rolling friction
-CHECKPOINT_WITH_TIMING = 8  # where contacts begin and end within steps
-CHECKPOINT_WITH_HERTZ = 8  # of a contact of elastic spheres
 HELD_MOST = 64 << 20  # frames and contacts that wait to be written
 FASTER = 3.0  # than the rule of thumb: so much sooner may frames come
 HELD_SHORTEST, HELD_SHARE, HELD_LONGEST = 2.0, 0.01, 60.0  # s, of the time so far, s: as the recorder flushes
@@ -46,7 +39,7 @@ EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 
 
 def frames_expected(case: Case) -> int:
     """Frames of the run at most, or by guess where only events end it."""
-    return math.floor(time_expected(case)[0] / case.record.frames) + 2
+    return math.floor(time_expected(case.stop, case.record)[0] / case.record.frames) + 2
 
 
 def bytes_per_grain(record: RecordSection) -> int:
@@ -68,7 +61,7 @@ def events_expected(case: Case, derived: Derived) -> int:
     dense = isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection | FillSection)
     if (dense or case.feeds) and derived.meet:
         rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
-    return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
+    return 0 if kept == "none" else math.ceil(n * rate * time_expected(case.stop, case.record)[0])
 
 
 def disk_for_events(case: Case, derived: Derived) -> int:
@@ -112,22 +105,6 @@ def memory_of_grains(
     return n_grain * (each + contacts * contact) + n_fixed * MEMORY_PER_FIXED
 
 
-def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
-    """Bytes of a checkpoint of free grains with so many contacts each."""
-    column = case.water is not None and case.water.profile == "column"
-    each = CHECKPOINT_PER_GRAIN + (CHECKPOINT_IN_COLUMN if column else 0)
-    contact = CHECKPOINT_PER_CONTACT
-    contact += BYTES_PER_EVENT if events_of(case) != "none" else 0
-    contact += (
-        CHECKPOINT_WITH_ROLLING
-        if case.rolling.model != "none" or case.rolling.twisting_coefficient > 0.0
-        else 0
-    )
-    contact += CHECKPOINT_WITH_TIMING if timing(case) is ContactTiming.EXACT else 0
-    contact += CHECKPOINT_WITH_HERTZ if is_hertz(case.contact) else 0
-    return n_grain * (each + contacts * contact)
-
-
 def held_back(case: Case, derived: Derived) -> float:
     """Bytes of frames and contacts that wait to be written, one frame at least."""
     seconds = wall_time_by_rule(case, derived).seconds
@@ -158,7 +135,7 @@ def memory_needed(case: Case, derived: Derived) -> int:
 
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Steps, frames, disk, memory and wall time."""
-    simulated, origin = time_expected(case)
+    simulated, origin = time_expected(case.stop, case.record)
     disk, took = disk_needed(case, derived), wall_time(case, derived)
     memory, contacts = memory_needed(case, derived), contacts_expected(case, derived)
     alone = water_alone(case)
@@ -174,7 +151,7 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     )
     return [
         number("cost", "simulated time", simulated, "s", origin),
-        count("cost", "steps", steps_expected(case, derived), "simulated time over dt"),
+        count("cost", "steps", steps_expected(case.stop, case.record, derived), "simulated time over dt"),
         count("cost", "frames", frames_expected(case), f"one every {case.record.frames:g} s (record.frames)"),
         _size(
             "disk for frames",

@@ -68,7 +68,7 @@ def spheres_of_form(case: Case, name: str) -> Spheres:
     ------
     CaseError : as `clump_of_form`.
     """
-    return _kept(case, name) or _made(case, name)
+    return _kept(case, name) or _made(case.folder, case.shapes[name], f"shapes.{name}")
 
 
 def _kept(case: Case, name: str) -> Spheres | None:
@@ -96,30 +96,28 @@ def _clump(spheres: Spheres) -> Clump:
     return clump.scaled(1.0 / clump.d_volume)
 
 
-def _made(case: Case, name: str) -> Spheres:
-    filling = _filling(case, name)
-    key, n = f"shapes.{name}", len(filling.d)
+def _made(folder: Path, form: FormSection, key: str) -> Spheres:
+    filling = _filling(folder, form, key)
+    n = len(filling.d)
     if filling.filled < LEAST_FILLED:
         remedy = f"it is too thin for so few; ask for more in {key}.spheres (at most {MOST_SPHERES})"
         if n in {MOST_SPHERES, 0}:
             remedy = f"it is too thin for {MOST_SPHERES} spheres, the most that a clump has"
         raise CaseError(key, None, f"{n} spheres fill {100.0 * filling.filled:.3g} % of the body: {remedy}")
-    wanted = case.shapes[name].filled
-    if wanted is not None and filling.filled < wanted - 0.01:
+    if form.filled is not None and filling.filled < form.filled - 0.01:
         reached = (
             f"{n} spheres fill {100.0 * filling.filled:.3g} % of the body; ask for less, or for more spheres"
         )
-        raise CaseError(f"{key}.filled", wanted, reached)
+        raise CaseError(f"{key}.filled", form.filled, reached)
     return tuple(map(tuple, np.column_stack([filling.x, filling.d]).tolist()))
 
 
-def _filling(case: Case, name: str) -> Filling:
-    form = case.shapes[name]
+def _filling(folder: Path, form: FormSection, key: str) -> Filling:
     most = form.spheres or (SPHERES if form.filled is None else MOST_SPHERES)
     share = form.filled or 1.0
     if form.file is None:
         return _in_ellipsoid(form.elongation or 1.0, form.flatness or 1.0, most, share)
-    return _in_mesh(_body(case, name), most, share)
+    return _in_mesh(_body(folder, form.file, f"{key}.file"), most, share)
 
 
 _in_ellipsoid = lru_cache(maxsize=16)(fill_ellipsoid)
@@ -140,19 +138,17 @@ def _in_mesh(body: _Body, most: int, share: float) -> Filling:
         raise CaseError(body.key, None, str(fault)) from None
 
 
-def _body(case: Case, name: str) -> _Body:
+def _body(folder: Path, file: str, key: str) -> _Body:
     """The body of a mesh.
 
     Raises
     ------
     CaseError : no such file, no mesh, or no closed body.
     """
-    file, key = case.shapes[name].file, f"shapes.{name}.file"
-    assert file is not None
-    path = inside(case.folder, key, file)
+    path = inside(folder, key, file)
     if path.suffix.lower() not in KINDS:
         raise CaseError(key, file, "must be an STL or OBJ file")
-    return contents(case.folder, key, file, path, partial(_read, key))
+    return contents(folder, key, file, path, partial(_read, key))
 
 
 @lru_cache(maxsize=8)
@@ -179,11 +175,12 @@ def form_rows(case: Case, name: str, clump: Clump) -> list[ExplainRow]:
             f"asked; {wide / long:.3g} and {high / wide:.3g} by calliper"
         )
         return [word("grains", label, f"{len(clump.d)} spheres", text)]
-    body = _body(case, name).mesh
+    key = f"shapes.{name}"
+    body = _body(case.folder, form.file, f"{key}.file").mesh
     own, scale = (6.0 * body.volume / math.pi) ** (1.0 / 3.0), 100.0
     off = [scale * (one * own / other - 1.0) for one, other in zip(clump.lengths, body.lengths, strict=True)]
     turns = scale * (clump.inertia * own**5 / body.moments - 1.0)
-    filled = _filling(case, name).filled if _kept(case, name) is None else math.nan
+    filled = _filling(case.folder, form, key).filled if _kept(case, name) is None else math.nan
     text = (
         f"{form.file}, {len(body.corners)} triangles; scaled to its volume, lengths of equal inertia off by "
         f"{off[0]:+.2g}, {off[1]:+.2g} and {off[2]:+.2g} %, moments of inertia by "

@@ -92,7 +92,7 @@ def _resolve_row(case: Case, data: dict[str, Any]) -> None:
             del end["run"]  # as in cases of earlier versions
     row["bottom"] = [list(one) for one in bottom_points(case)]
     if row["surface"] is not None:
-        row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
+        row["surface"] = [list(one) for one in line_points(case.folder, "water.row.surface", row["surface"])]
     if water_alone(case) or stream(case):
         plan = row_plan(case)
         data["column"]["cell"] = plan.cell

@@ -58,9 +58,9 @@ def _courses(whole: Case, share: float) -> dict[str, str]:
     found: dict[str, str] = {}
     keys = whole.row
     if keys is not None and keys.upstream is not None and keys.upstream.hydrograph is not None:
-        found[HYDROGRAPH] = _points(hydrograph_points(whole, keys.upstream.hydrograph), share)
+        found[HYDROGRAPH] = _points(hydrograph_points(whole.folder, keys.upstream.hydrograph), share)
     if keys is not None and keys.downstream is not None and keys.downstream.stage is not None:
-        points = stage_points(whole, keys.downstream.stage)
+        points = stage_points(whole.folder, keys.downstream.stage)
         found[STAGE] = _points([(t, (z, "m")) for t, z in points], share)
     for k, feed in enumerate(whole.feeds):
         if feed.sedigraph is not None:

@@ -12,6 +12,7 @@ from ryusa.casefile.column.schema import CELL
 from ryusa.casefile.contact.values import timing
 from ryusa.casefile.facts import Derived
 from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.record.schema import RecordSection, StopSection
 from ryusa.casefile.row.values import row_plan, segments_of, stream, water_alone
 from ryusa.laws.families import ContactTiming, Pressure
 
@@ -88,23 +89,23 @@ class WallTime:
         return f"{self.seconds / unit:.3g} {of}"
 
 
-def time_expected(case: Case) -> tuple[float, str]:
+def time_expected(stop: StopSection, record: RecordSection) -> tuple[float, str]:
     """Simulated time at most [s], and where that number comes from."""
     found: list[tuple[float, str]] = []
-    if case.stop.time is not None:
-        sooner = ", or sooner: when stop.precision is reached" if case.stop.precision else ""
-        found.append((case.stop.time, f"stop.time{sooner}"))
-    if case.stop.saltations is not None:
-        guess = case.record.settle + case.stop.saltations * SECONDS_PER_SALTATION
+    if stop.time is not None:
+        sooner = ", or sooner: when stop.precision is reached" if stop.precision else ""
+        found.append((stop.time, f"stop.time{sooner}"))
+    if stop.saltations is not None:
+        guess = record.settle + stop.saltations * SECONDS_PER_SALTATION
         found.append((guess, f"guess: settle + {SECONDS_PER_SALTATION} s per saltation"))
     if not found:
         found.append((SECONDS_TO_REST, f"guess: at rest within {SECONDS_TO_REST:g} s"))
     return min(found)
 
 
-def steps_expected(case: Case, derived: Derived) -> int:
+def steps_expected(stop: StopSection, record: RecordSection, derived: Derived) -> int:
     """Steps of the run at most, or by guess where only events end it."""
-    return math.ceil(time_expected(case)[0] / derived.dt)
+    return math.ceil(time_expected(stop, record)[0] / derived.dt)
 
 
 def kind_of_run(case: Case, threads: int = 1, engine: str = "cpu") -> str:
@@ -146,7 +147,7 @@ def wall_time_by_rule(case: Case, derived: Derived) -> WallTime:
     """Wall time by the rule of thumb on one core: the same on every machine."""
     stop = case.stop
     share = SHARE_TO_HOPS if stop.saltations is not None else SHARE_TO_REST if stop.rest is not None else 1.0
-    seconds = share * steps_expected(case, derived) * seconds_per_step(case, derived)
+    seconds = share * steps_expected(case.stop, case.record, derived) * seconds_per_step(case, derived)
     return WallTime(seconds, 1.0 / WITHIN, WITHIN, 0, kind_of_run(case))
 
 

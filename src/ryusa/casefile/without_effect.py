@@ -262,7 +262,7 @@ def _acts_on_water(case: Case, key: str) -> bool:
         end = None if keys is None else keys.upstream
         every = [one.discharge for one in (end, *case.timeline) if one is not None]
         if end is not None and end.hydrograph is not None:
-            every += [q for _, q in hydrograph_points(case, end.hydrograph)]
+            every += [q for _, q in hydrograph_points(case.folder, end.hydrograph)]
         return any(one is not None and one[1] == "m3/s" for one in every)
     curve = ("grains.sieve_curve", "grains.finest", "grains.coarsest")
     if key in curve:  # D50 is the roughness

@@ -256,14 +256,6 @@ class Compilable:
         finally:
             self._asked = False
 
-    @property
-    def keepable(self) -> bool:
-        """Whether a store can hold it."""
-        try:
-            return bool(self.content)
-        except UnknownContentError:
-            return False
-
     def _plain(self) -> dict[str, Any]:
         """Options of Numba, those that are on by default included.
 

@@ -108,10 +108,7 @@ class EmulatedTarget:
 @style.house
 def emulators_picture(targets: Sequence[EmulatedTarget]) -> Figure:
     """Draw what the other runs predict for each run over what it gave."""
-    columns = min(len(targets), PANELS)
-    rows = math.ceil(len(targets) / columns)
-    width = style.COLUMN if columns == 1 else style.PAGE
-    figure, panels = style.new(rows, columns, width=width, height=2.7 * rows)
+    figure, panels, _ = _panels(len(targets), 2.7)
     for panel, one in zip(panels, targets, strict=False):
         ends = [
             min(one.measured.min(), (one.predicted - one.sd).min()),
@@ -126,9 +123,18 @@ def emulators_picture(targets: Sequence[EmulatedTarget]) -> Figure:
         panel.set_ylabel("from the other runs, ± s.d.")
         panel.xaxis.set_major_locator(MaxNLocator(TICKS))
         panel.yaxis.set_major_locator(MaxNLocator(TICKS))
-    for panel in panels[len(targets) :]:
-        panel.set_visible(False)
     return figure
+
+
+def _panels(count: int, height: float) -> tuple[Figure, list[Axes], int]:
+    """A figure of so many panels, each of that height [inch], and how many stand in a row."""
+    columns = min(count, PANELS)
+    rows = math.ceil(count / columns)
+    width = style.COLUMN if columns == 1 else style.PAGE
+    figure, panels = style.new(rows, columns, width=width, height=height * rows)
+    for panel in panels[count:]:
+        panel.set_visible(False)
+    return figure, panels[:count], columns
 
 
 @dataclass(frozen=True)
@@ -151,10 +157,7 @@ class PredictedTarget:
 @style.house
 def predicted_picture(targets: Sequence[PredictedTarget]) -> Figure:
     """Draw every quantity over the prior and over the posterior, with what was observed."""
-    columns = min(len(targets), PANELS)
-    rows = math.ceil(len(targets) / columns)
-    width = style.COLUMN if columns == 1 else style.PAGE
-    figure, panels = style.new(rows, columns, width=width, height=2.3 * rows)
+    figure, panels, columns = _panels(len(targets), 2.3)
     for k, (panel, one) in enumerate(zip(panels, targets, strict=False)):
         both = np.concatenate([one.prior, one.posterior])
         edges = np.linspace(both.min(), both.max(), 2 * BINS + 1)
@@ -169,6 +172,4 @@ def predicted_picture(targets: Sequence[PredictedTarget]) -> Figure:
             panel.set_ylabel("density")
         if k == 0 or (one.observed is not None and all(two.observed is None for two in targets[:k])):
             panel.legend(fontsize=6.5)
-    for panel in panels[len(targets) :]:
-        panel.set_visible(False)
     return figure

@@ -41,13 +41,7 @@ def loads(found: Loads, wall: Sequence[str] = ()) -> Figure:
     for k, s in enumerate(at):
         _force(axes[2 * k], found, s)
         _place(axes[2 * k + 1], found, s)
-    for one in axes:
-        one.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
-        one.margins(x=0.0)
-        if one.get_legend_handles_labels()[0]:
-            one.legend(fontsize=6.0, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    axes[-1].set_xlabel("time  $t$  (s)")
-    figure.align_ylabels(axes)
+    style.over_time(figure, axes)
     if left := [name for s, name in enumerate(found.names) if s not in at and not wall]:
         style.note(
             figure, f"the {MOST} with the largest forces; --wall NAME draws another: {', '.join(left)}"

@@ -3,7 +3,7 @@
 import io
 import math
 import re
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -131,6 +131,17 @@ def new(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False, **how)
     return figure, list(axes.flat)
+
+
+def over_time(figure: Figure, panels: Sequence[Axes]) -> None:
+    """Finish panels over one axis of time: a line at zero, and legends beside them."""
+    for one in panels:
+        one.axhline(0.0, color=FAINT, lw=0.4, zorder=0)
+        one.margins(x=0.0)
+        if one.get_legend_handles_labels()[0]:
+            one.legend(fontsize=6.0, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    panels[-1].set_xlabel("time  $t$  (s)")
+    figure.align_ylabels(panels)
 
 
 def save(figure: Figure, path: Path | str) -> Path:

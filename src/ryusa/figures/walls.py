@@ -45,13 +45,7 @@ def walls(found: WallForces, wall: Sequence[str] = ()) -> Figure:
             colour = style.COLOURS[at.index(w) % len(style.COLOURS)]
             axes[-1].plot(found.t, found.power[:, w], color=colour, lw=0.9, label=found.names[w])
         axes[-1].set_ylabel("power of\nthe wall  (W)")
-    for one in axes:
-        one.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
-        one.margins(x=0.0)
-        if one.get_legend_handles_labels()[0]:
-            one.legend(fontsize=6.0, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    axes[-1].set_xlabel("time  $t$  (s)")
-    figure.align_ylabels(axes)
+    style.over_time(figure, axes)
     for one in said:
         style.note(figure, one)
     return figure

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
-from ryusa.formats.dialect import Dialect, dialect_of
+from ryusa.formats.dialect import Dialect
 from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, UNITS, GrainTable, PlaneWall
 from ryusa.formats.names import not_used
+from ryusa.formats.table import cells_of, header_of
 from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened, shown
 from ryusa.model.arrays import Floats
 from ryusa.units import UnitError, quantity
@@ -86,9 +87,7 @@ def read_csv(path: Path, name: str, frame: int | None = None) -> GrainTable:
         while lines.advance():
             if dialect.blank(lines.text):
                 continue
-            cells = dialect.cells(lines.text, len(heads))
-            if len(cells) != len(heads):
-                raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
+            cells = cells_of(lines, dialect, len(heads))
             t = cells[when] if when is not None else ""
             if n_frame == 0 or t != now:
                 if n_frame - 1 == frame:
@@ -116,14 +115,7 @@ def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]], Dialec
             break
     else:
         raise lines.error("expected a header and at least one grain")
-    dialect = dialect_of(lines.text)
-    header = Rows(lines.name, [(lines.number, lines.text)], dialect.column)
-    heads: list[tuple[str, float]] = []
-    for k, cell in enumerate(dialect.heads(lines.text)):
-        try:
-            heads.append(_column(cell))
-        except ValueError as error:
-            raise header.error(0, k, str(error)) from None
+    header, heads, dialect = header_of(lines, _column)
     names = [one for one, _ in heads]
     for needed in NEEDED:
         if needed not in names:

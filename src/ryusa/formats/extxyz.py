@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -116,31 +117,8 @@ def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]
     def wrong(key: str, message: str) -> ParseError:
         return ParseError(rows.name, line, keys[key].start() + 1, message)
 
-    words: dict[str, int] = {}
-    factors: dict[str, float] = {}
-    unused: list[str] = []
-    width = 0
     text = value("properties") if "properties" in keys else _PLAIN
-    parts = text.split(":")
-    for k in range(0, len(parts), 3):
-        known, kind, count = (*parts[k : k + 3], "", "")[:3]
-        if kind not in {"S", "I", "R", "L"} or not count.isdecimal() or not 1 <= int(count[:4]) <= 100:
-            raise wrong("properties", f"expected Properties as name:type:count:..., found {shown(text)}")
-        word, size = known.lower(), meaning_of(known)
-        columns = _READ.get(word, (word,) if word in {"id", "fixed"} else (size[0],) if size else ())
-        if columns and len(columns) != int(count):
-            raise wrong("properties", f"expected {len(columns)} columns of '{known}', found {int(count)}")
-        if any(column in words for column in columns):  # a radius beside a diameter
-            unused.append(known)
-        for j, column in enumerate(columns):
-            words.setdefault(column, width + j)
-        if size is not None:
-            factors.setdefault(size[0], size[1])
-        if not columns and word not in _WITHOUT_USE:
-            unused.append(known)
-        width += int(count)
-    if "x" not in words:
-        raise wrong("properties", "expected a property pos:R:3, the positions")
+    words, factors, unused, width = _properties(text, partial(wrong, "properties"))
     for row, (_, one) in enumerate(rows.where):
         if (got := len(one.split())) != width:
             raise rows.error(row, min(got, width), f"expected {width} words, found {got}")
@@ -170,6 +148,37 @@ def _table(head: _Head, rows: Rows, options: ReadOptions, notes: tuple[str, ...]
         ),
     )
     return checked(table, rows, words)
+
+
+def _properties(
+    text: str, wrong: Callable[[str], ParseError]
+) -> tuple[dict[str, int], dict[str, float], list[str], int]:
+    """Place and factor of each column, properties without use, and the number of words in a row."""
+    words: dict[str, int] = {}
+    factors: dict[str, float] = {}
+    unused: list[str] = []
+    width = 0
+    parts = text.split(":")
+    for k in range(0, len(parts), 3):
+        known, kind, count = (*parts[k : k + 3], "", "")[:3]
+        if kind not in {"S", "I", "R", "L"} or not count.isdecimal() or not 1 <= int(count[:4]) <= 100:
+            raise wrong(f"expected Properties as name:type:count:..., found {shown(text)}")
+        word, size = known.lower(), meaning_of(known)
+        columns = _READ.get(word, (word,) if word in {"id", "fixed"} else (size[0],) if size else ())
+        if columns and len(columns) != int(count):
+            raise wrong(f"expected {len(columns)} columns of '{known}', found {int(count)}")
+        if any(column in words for column in columns):  # a radius beside a diameter
+            unused.append(known)
+        for j, column in enumerate(columns):
+            words.setdefault(column, width + j)
+        if size is not None:
+            factors.setdefault(size[0], size[1])
+        if not columns and word not in _WITHOUT_USE:
+            unused.append(known)
+        width += int(count)
+    if "x" not in words:
+        raise wrong("expected a property pos:R:3, the positions")
+    return words, factors, unused, width
 
 
 def _period(

@@ -48,13 +48,34 @@ def read_table(
         while lines.advance():
             if dialect.blank(lines.text):
                 continue
-            cells = dialect.cells(lines.text, len(heads))
-            if len(cells) != len(heads):
-                raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
+            cells_of(lines, dialect, len(heads))
             where.append((lines.number, lines.text))
         if not where:
             raise lines.error(f"expected {least} below the header")
     return Rows(name, where, dialect.column, dialect.split, dialect.number), heads
+
+
+def header_of(
+    lines: Lines, column: Callable[[str], tuple[str, float]]
+) -> tuple[Rows, list[tuple[str, float]], Dialect]:
+    """The header read last as a row, each column as `column` says it, and how cells are separated."""
+    dialect = dialect_of(lines.text)
+    header = Rows(lines.name, [(lines.number, lines.text)], dialect.column)
+    heads: list[tuple[str, float]] = []
+    for k, cell in enumerate(dialect.heads(lines.text)):
+        try:
+            heads.append(column(cell))
+        except ValueError as error:
+            raise header.error(0, k, str(error)) from None
+    return header, heads, dialect
+
+
+def cells_of(lines: Lines, dialect: Dialect, n: int) -> list[str]:
+    """Cells of the line read last; raises `ParseError` if they are not as many as the header has."""
+    cells = dialect.cells(lines.text, n)
+    if len(cells) != n:
+        raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {n}")
+    return cells
 
 
 def read_lengths(
@@ -125,14 +146,7 @@ def _head(
             break
     else:
         raise lines.error(f"expected a header such as {example}, and below it a row per {row}")
-    dialect = dialect_of(lines.text)
-    header = Rows(lines.name, [(lines.number, lines.text)], dialect.column)
-    heads: list[tuple[str, float]] = []
-    for k, cell in enumerate(dialect.heads(lines.text)):
-        try:
-            heads.append(column(cell))
-        except ValueError as error:
-            raise header.error(0, k, str(error)) from None
+    header, heads, dialect = header_of(lines, column)
     names = [one for one, _ in heads]
     for one in needed:
         if one not in names:

@@ -73,10 +73,6 @@ class Collisions(Averaged):
         """One dictionary per contact."""
         return rows_of(self.events)
 
-    def rows(self) -> list[dict[str, object]]:
-        """One dictionary per average."""
-        return self.averages.rows()
-
 
 def _over(above: Floats, below: Floats) -> Floats:
     """Quotients; nan where nothing is below."""

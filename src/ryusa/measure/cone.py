@@ -10,6 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.repose import surface
 from ryusa.measure.snapshot import snapshot
+from ryusa.measure.table import lines
 from ryusa.printed import ByShape
 
 Ints = NDArray[np.int64]
@@ -76,10 +77,7 @@ class Cone(ByShape):
 
     def samples(self) -> list[dict[str, object]]:
         """One dictionary per cell."""
-        return [
-            {"r_m": float(r), "z_m": float(z), "in_fit": bool(one)}
-            for r, z, one in zip(self.r, self.z, self.inside, strict=True)
-        ]
+        return lines({"r_m": self.r, "z_m": self.z, "in_fit": self.inside})
 
 
 def cone(run: Run, t: float | None = None) -> Cone:

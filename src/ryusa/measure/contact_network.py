@@ -1,6 +1,7 @@
 """Contact forces at one moment, each with the line along which it acts: the network of forces."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.laws.families import Cap
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, inside_periods, lanes_of, scene_at, snapshot
+from ryusa.measure.table import lines
 from ryusa.model import Scene
 from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Bools
@@ -56,14 +58,10 @@ class ContactNetwork(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per contact."""
-        rows: list[dict[str, object]] = []
-        for k in range(len(self.i)):
-            row: dict[str, object] = {"t_s": self.seen.t, "i": int(self.i[k]), "j": int(self.j[k])}
-            for name, place in (("begin", self.begin[k]), ("end", self.end[k])):
-                row |= {f"{name}_{axis}_m": float(place[n]) for n, axis in enumerate("xyz")}
-            row |= {"f_n_N": float(self.f_n[k]), "f_s_N": float(self.f_s[k])}
-            rows.append(row | {"sliding": bool(self.sliding[k])})
-        return rows
+        columns: dict[str, Any] = {"t_s": self.seen.t, "i": self.i, "j": self.j}
+        for name, place in (("begin", self.begin), ("end", self.end)):
+            columns |= {f"{name}_{axis}_m": place[:, n] for n, axis in enumerate("xyz")}
+        return lines(columns | {"f_n_N": self.f_n, "f_s_N": self.f_s, "sliding": self.sliding})
 
 
 def contact_network(run: Run, t: float | None = None, lane: int | None = None) -> ContactNetwork:

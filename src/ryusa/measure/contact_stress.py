@@ -11,8 +11,8 @@ from ryusa.measure._run import Floats, Run, crest_of
 from ryusa.measure.bed_area import area_of
 from ryusa.measure.layers import Layers, layers_mean, layers_quotient
 from ryusa.measure.snapshot import scene_at
-from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.statistics import Average, average
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
@@ -93,18 +93,13 @@ class ContactStress(Averaged):
             ("contact_xz_Pa", self.contact_xz), ("p_Pa", self.p), ("mu", self.mu),
             *((f"fabric_{one}", getattr(self, f"fabric_{one}")) for one in ("xx", "zz", "xz")),
         )  # fmt: skip
-        return [
-            dict[str, object](z_m=float(z))
-            | {name: float(one.value[k]) for name, one in columns}
-            | {f"{one.name}_error": float(one.error[k]) for _, one in columns}
-            | {
-                "shear_rate_per_s": float(self.shear_rate[k]),
-                "inertial_number": float(self.inertial_number[k]),
-                "weight_above_Pa": float(self.weight[k]),
-                "weight_above_along_Pa": float(self.weight_along[k]),
-            }
-            for k, z in enumerate(self.z)
-        ]
+        of_layers = {"z_m": self.z} | {name: one.value for name, one in columns}
+        of_layers |= {f"{one.name}_error": one.error for _, one in columns}
+        of_layers |= {
+            "shear_rate_per_s": self.shear_rate, "inertial_number": self.inertial_number,
+            "weight_above_Pa": self.weight, "weight_above_along_Pa": self.weight_along,
+        }  # fmt: skip
+        return lines(of_layers)
 
 
 def contact_stress(
@@ -149,7 +144,6 @@ def contact_stress(
     frames = [_frame(run, k, z, length) for k in range(first, last)]
     *sums, directions, fabric = (np.array(one) for one in zip(*frames, strict=True))
     contact, moved, weights, held = (one / area for one in sums)
-    bed, lid = held[:, 0], held[:, 1]
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
     pressure = whole[:, (XX, ZZ) if scene.plane_case else (XX, YY, ZZ)].mean(axis=1)
@@ -191,25 +185,30 @@ def contact_stress(
         deviation_along=off_along,
         area=area,
         averages=Averages(
-            "contact_stress",
-            (
-                average("bed_normal", "Pa", [bed[:, 2]], window),
-                average("bed_shear", "Pa", [-bed[:, 0]], window),
-                *(
-                    average(name, "Pa", [force], window)
-                    for name, force in (("lid_normal", -lid[:, 2]), ("lid_shear", lid[:, 0]))
-                    if lid.any()
-                ),
-                *(
-                    average(f"fabric_{name}", "-", [fabric[np.isfinite(fabric[:, c]), c]], window)
-                    for c, name in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))
-                ),
-            ),
+            "contact_stress", _averages(held, fabric, window),
             (
                 *_balance(scene, area, off, off_along),
                 f"area {area:.4g} m2; coarse graining: Gaussian of standard deviation {length:.3g} m, mean "
                 f"of {len(t)} frames",
             ),
+        ),
+    )  # fmt: skip
+
+
+def _averages(held: Floats, fabric: Floats, window: tuple[float, float]) -> tuple[Average, ...]:
+    """Stress at bed and lid (n_frame, 2, 3) [Pa], and the fabric of all contacts (n_frame, 6) [-]."""
+    bed, lid = held[:, 0], held[:, 1]
+    return (
+        average("bed_normal", "Pa", [bed[:, 2]], window),
+        average("bed_shear", "Pa", [-bed[:, 0]], window),
+        *(
+            average(name, "Pa", [force], window)
+            for name, force in (("lid_normal", -lid[:, 2]), ("lid_shear", lid[:, 0]))
+            if lid.any()
+        ),
+        *(
+            average(f"fabric_{name}", "-", [fabric[np.isfinite(fabric[:, c]), c]], window)
+            for c, name in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))
         ),
     )
 

@@ -10,7 +10,7 @@ from ryusa.measure.layers import Layers, layers_quotient
 from ryusa.measure.slices_in_layers import frames_of_grains
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.results.touching import contacts_per_grain
 
 
@@ -43,23 +43,16 @@ class Coordination(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per layer."""
-        return [
-            {
-                "z_m": float(z),
-                "coordination": float(self.over_height.value[k]),
-                "coordination_error": float(self.over_height.error[k]),
-                "without_rattlers": float(self.without_rattlers.value[k]),
-                "without_rattlers_error": float(self.without_rattlers.error[k]),
-            }
-            for k, z in enumerate(self.z)
-        ]
+        every, kept = self.over_height, self.without_rattlers
+        columns = {
+            "z_m": self.z, "coordination": every.value, "coordination_error": every.error,
+            "without_rattlers": kept.value, "without_rattlers_error": kept.error,
+        }  # fmt: skip
+        return lines(columns)
 
     def series(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
-        return [
-            {"t_s": float(t), "coordination": float(self.contacts[k]), "rattlers": float(self.rattlers[k])}
-            for k, t in enumerate(self.t)
-        ]
+        return lines({"t_s": self.t, "coordination": self.contacts, "rattlers": self.rattlers})
 
 
 def coordination(

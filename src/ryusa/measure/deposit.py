@@ -1,6 +1,7 @@
 """A deposit in a row of columns over time: its slope, what is stored, and the share that is trapped."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,22 +122,15 @@ def deposit(
     stored = held - held[0]
     beds = bed_line(run, found, frames, bed)
     slope, error, fitted = _slopes(run, row, beds, found.floor, (low, face), t)
-    window = (float(t[0]), float(t[-1]))
-    dt = np.diff(t)
-    averages = [average("slope", "-", [slope], window)]
-    averages += [
-        ratio(f"{name}_rate", "m2/s", [np.diff(one)], [dt], window)
-        for name, one in (("stored", stored), ("brought", brought), ("passed", passed))
-    ]
     came_in = brought > ROUND_OFF * (held.max() + abs(brought).max())
     with np.errstate(invalid="ignore", divide="ignore"):
         trapped = np.where(came_in, stored / brought, math.nan)
-    averages.append(_counted("trapped_share", float(trapped[-1]), window))
+    volumes = {"stored": stored, "brought": brought, "passed": passed}
     scatter = float(np.sqrt(np.nanmean(error**2))) if np.isfinite(error).any() else math.nan
     return Deposit(
         t, (low, high), fitted, slope, error, held, stored, brought, passed, trapped, over[:, 0],
         Averages(
-            "deposit", tuple(averages),
+            "deposit", _averages(t, slope, volumes, float(trapped[-1])),
             (
                 f"reach: x = {low:.4g} to {high:.4g} m; since t = {t[0]:.4g} s {brought[-1]:.4g} m2 came and "
                 f"{passed[-1]:.4g} m2 went, {stored[-1]:.4g} m2 are stored, per width and without pores",
@@ -144,6 +138,17 @@ def deposit(
                 _of_share(bool(came_in[-1]), low),
             ),
         ),
+    )  # fmt: skip
+
+
+def _averages(t: Floats, slope: Floats, volumes: Mapping[str, Floats], trapped: float) -> tuple[Average, ...]:
+    """Slope, rate of each volume per width, and the share that is trapped in the end."""
+    window = (float(t[0]), float(t[-1]))
+    rates = [
+        ratio(f"{name}_rate", "m2/s", [np.diff(one)], [np.diff(t)], window) for name, one in volumes.items()
+    ]
+    return (
+        average("slope", "-", [slope], window), *rates, _counted("trapped_share", trapped, window),
     )  # fmt: skip
 
 

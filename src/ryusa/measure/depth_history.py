@@ -62,10 +62,9 @@ class DepthHistory(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One line for each frame and segment."""
-        n, m = self.depth.shape
         columns = {
-            "t": np.repeat(self.t, m), "x": np.tile(self.x, n), "depth": self.depth,
-            "discharge": self.discharge, "froude": self.froude,
+            "t": self.t[:, None], "x": self.x, "depth": self.depth, "discharge": self.discharge,
+            "froude": self.froude,
         }  # fmt: skip
         if self.grains:
             columns |= {

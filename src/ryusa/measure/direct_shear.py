@@ -9,7 +9,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.walls import ALONG, pressed_lid, walls
 from ryusa.model import Scene
 from ryusa.model.walls import SPIN, SWING, VELOCITY, pose
@@ -54,7 +54,7 @@ class DirectShear(Averaged):
             "t_s": self.t, "displacement_m": self.displacement, "normal_N": self.normal,
             "shear_N": self.shear, "mu": self.shear / self.normal, "rise_m": self.rise,
         }  # fmt: skip
-        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+        return lines(columns)
 
 
 def direct_shear(run: Run, begin: float | None = None, end: float = math.inf) -> DirectShear:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model.feeds import IN, OUT
 
 Ints = NDArray[np.int64]
@@ -51,7 +51,7 @@ class Discharge(Averaged):
         }  # fmt: skip
         columns |= {f"in_by_{name}_kg": one for name, one in self.by_feed.items()}
         columns |= {f"out_by_{name}_kg": one for name, one in self.by_exit.items()}
-        return [{name: one[k].item() for name, one in columns.items()} for k in range(len(self.t))]
+        return lines(columns)
 
 
 def discharge(run: Run, begin: float | None = None, end: float = math.inf) -> Discharge:

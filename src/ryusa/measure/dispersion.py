@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.transport import window_of
 
 PLACES = 4_000_000  # of grains held in memory at once
@@ -38,15 +38,10 @@ class Dispersion(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per lag."""
-        return [
-            {
-                "lag_s": float(lag),
-                "along_m2": float(self.along[k]),
-                "across_m2": float(self.across[k]),
-                "normal_m2": float(self.normal[k]),
-            }
-            for k, lag in enumerate(self.lag)
-        ]
+        columns = {
+            "lag_s": self.lag, "along_m2": self.along, "across_m2": self.across, "normal_m2": self.normal
+        }  # fmt: skip
+        return lines(columns)
 
 
 def dispersion(

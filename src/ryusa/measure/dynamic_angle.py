@@ -9,7 +9,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model.walls import SPIN, FaceKind, pose
 
 BIN = 1.5  # along the surface, in mean diameters
@@ -47,10 +47,11 @@ class DynamicAngle(Averaged):
 
     def series(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
-        return [
-            {"t_s": float(t), "surface_rad": float(a), "centre_of_mass_rad": float(b), "offset_m": float(c)}
-            for t, a, b, c in zip(self.t, self.surface, self.mass, self.offset, strict=True)
-        ]
+        columns = {
+            "t_s": self.t, "surface_rad": self.surface, "centre_of_mass_rad": self.mass,
+            "offset_m": self.offset,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def dynamic_angle(run: Run, begin: float | None = None, end: float = math.inf) -> DynamicAngle:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
+from ryusa.measure.table import lines
 from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
 from ryusa.printed import ByShape
@@ -69,7 +70,7 @@ class Energy(ByShape):
         columns |= {f"lost_{name}_J": one for name, one in self.lost.items()}
         columns |= {f"given_{name}_J": one for name, one in self.given.items()}
         columns["imbalance_J"] = self.imbalance
-        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+        return lines(columns)
 
 
 def energy(run: Run) -> Energy:

@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.statistics import Average, average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.transport import places_of, window_of
 from ryusa.model import Scene
 
@@ -46,17 +46,12 @@ class Entrainment(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per time between two frames."""
-        return [
-            {
-                "t_s": float(self.t[k]),
-                "dt_s": float(self.dt[k]),
-                "started": int(self.started[k]),
-                "stopped": int(self.stopped[k]),
-                "started_volume_m3": float(self.started_volume[k]),
-                "stopped_volume_m3": float(self.stopped_volume[k]),
-            }
-            for k in range(len(self.t))
-        ]
+        columns = {
+            "t_s": self.t, "dt_s": self.dt,
+            "started": self.started.astype(np.int64), "stopped": self.stopped.astype(np.int64),
+            "started_volume_m3": self.started_volume, "stopped_volume_m3": self.stopped_volume,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def entrainment(

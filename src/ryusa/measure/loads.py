@@ -11,6 +11,7 @@ from ryusa.measure.approaching_front import ApproachingFront, approaching_front,
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.structures import Structure, of_grains, structures_of, water_on_dam, water_on_mesh
 from ryusa.measure.table import Averaged, Averages
+from ryusa.model import ColumnRow
 
 SHARES = (0.95, 0.99)  # of the time in which a load stays below a percentile
 
@@ -126,20 +127,7 @@ def loads(run: Run, begin: float | None = None, end: float = math.inf, window: f
     every = np.asarray(frames.t, dtype=np.float64)
     kept = frames_between(every, since, end)
     t, row = every[kept], frames.row
-    found, said = structures_of(run, float(t[0]))
-    if not found:
-        seeping = ", ".join(one.name for one in row.dams)
-        raise ResultsError(
-            "no [[walls]], and no dam that stops the water of the row"
-            f"{f': it seeps through {seeping}' if seeping else ''}"
-        )
-    grains, touched = of_grains(run, found, kept)
-    shown = [s for s, one in enumerate(found) if one.dam or one.mesh or touched[s]]
-    if not shown:
-        raise ResultsError(f"neither water nor a grain pushes {', '.join(one.name for one in found)}")
-    if left := [one.name for s, one in enumerate(found) if s not in shown]:
-        said.append(f"left out, as neither water nor a grain pushes it: {', '.join(left)}")
-    found, grains = [found[s] for s in shown], grains[:, shown]
+    found, grains, said = _pushed(run, row, kept, float(t[0]))
     width = row.column.area / (row.n_segment * row.dx)
     at = np.array([_of_water(run, one, kept, width) for one in found]).transpose(1, 0, 2)
     water = 0.5 * (at[1:] + at[:-1])
@@ -166,6 +154,29 @@ def loads(run: Run, begin: float | None = None, end: float = math.inf, window: f
         np.array([one.toe for one in found]), water[:, :, :3], grains, height, span, np.array(largest),
         tuple(fronts), Averages("loads", tuple(items), (first, *said)),
     )  # fmt: skip
+
+
+def _pushed(run: Run, row: ColumnRow, kept: slice, t: float) -> tuple[list[Structure], Floats, list[str]]:
+    """Structures that water or grains push, force and moment of the grains on each, and what is said of them.
+
+    Raises
+    ------
+    ResultsError : there is none.
+    """
+    found, said = structures_of(run, t)
+    if not found:
+        seeping = ", ".join(one.name for one in row.dams)
+        raise ResultsError(
+            "no [[walls]], and no dam that stops the water of the row"
+            f"{f': it seeps through {seeping}' if seeping else ''}"
+        )
+    grains, touched = of_grains(run, found, kept)
+    shown = [s for s, one in enumerate(found) if one.dam or one.mesh or touched[s]]
+    if not shown:
+        raise ResultsError(f"neither water nor a grain pushes {', '.join(one.name for one in found)}")
+    if left := [one.name for s, one in enumerate(found) if s not in shown]:
+        said.append(f"left out, as neither water nor a grain pushes it: {', '.join(left)}")
+    return [found[s] for s in shown], grains[:, shown], said
 
 
 def _of_water(run: Run, one: Structure, kept: slice, width: float) -> Floats:

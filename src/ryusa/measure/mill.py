@@ -9,7 +9,7 @@ from ryusa.errors import ResultsError
 from ryusa.laws.drum import critical_rate
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.walls import walls
 from ryusa.model.tally import HELD, LOSSES
 from ryusa.model.walls import AXIS_POINT, SPIN, FaceKind
@@ -56,7 +56,7 @@ class Mill(Averaged):
             "t_s": self.t, "torque_Nm": self.torque, "power_W": self.power, "given_W": self.given,
             "lost_W": self.lost, "stored_W": self.stored,
         }  # fmt: skip
-        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+        return lines(columns)
 
 
 def mill(run: Run, begin: float | None = None, end: float = math.inf) -> Mill:

@@ -13,7 +13,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import Scene
 from ryusa.model.scene import EventRule
 
@@ -72,24 +72,13 @@ class Paths(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per window and grain."""
-        jaggedness = self.jaggedness
-        return [
-            dict[str, object](
-                grain=int(g),
-                begin_s=float(self.begin[k]),
-                end_s=float(self.end[k]),
-                d_m=float(self.d[c]),
-                advance_m=float(self.advance[k, c]),
-                range_z_m=float(self.range_z[k, c]),
-                reversals_per_s=float(self.reversals[k, c]),
-                way_z_m=float(self.way_z[k, c]),
-                jaggedness=float(jaggedness[k, c]),
-                above_crest_m=float(self.above_crest[k, c]),
-                near=float(self.near[k, c]),
-            )
-            for k in range(len(self.end))
-            for c, g in enumerate(self.grains)
-        ]
+        columns = {
+            "grain": self.grains, "begin_s": self.begin[:, None], "end_s": self.end[:, None], "d_m": self.d,
+            "advance_m": self.advance, "range_z_m": self.range_z, "reversals_per_s": self.reversals,
+            "way_z_m": self.way_z, "jaggedness": self.jaggedness, "above_crest_m": self.above_crest,
+            "near": self.near,
+        }  # fmt: skip
+        return lines(columns)
 
 
 @dataclass(frozen=True)

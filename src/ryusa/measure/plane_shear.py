@@ -11,7 +11,7 @@ from ryusa.measure._run import Floats, Run
 from ryusa.measure.layers import Layers, layers_mean, layers_quotient
 from ryusa.measure.slices_in_layers import U_X, V, sums_in_layers
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.transport import window_of
 from ryusa.measure.walls import pressed_lid, walls
 from ryusa.model import Scene
@@ -64,10 +64,7 @@ class PlaneShear(Averaged):
 
     def series(self) -> list[dict[str, object]]:
         """One dictionary per time between two frames."""
-        return [
-            {"t_s": float(t), "normal_Pa": float(p), "shear_Pa": float(s)}
-            for t, p, s in zip(self.t, self.normal, self.shear, strict=True)
-        ]
+        return lines({"t_s": self.t, "normal_Pa": self.normal, "shear_Pa": self.shear})
 
 
 def plane_shear(run: Run, begin: float | None = None, end: float = math.inf) -> PlaneShear:

@@ -23,7 +23,7 @@ from ryusa.measure.slices_in_layers import (
 )
 from ryusa.measure.snapshot import lanes_of
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 
 
 @dataclass(frozen=True, repr=False)
@@ -85,11 +85,6 @@ class Profiles(Averaged):
             self.temperature_z, self.flux,
         )  # fmt: skip
 
-    @property
-    def mass_flux(self) -> Floats:
-        """Mass of grains that crosses a unit of area in a second [kg/(m2 s)], shape (n_layer,)."""
-        return self.density * self.flux.value
-
     def top(self, share: float = 0.99) -> float:
         """Height below which so large a share of all grain volume lies [m]."""
         below = np.cumsum(self.phi.value)
@@ -102,20 +97,17 @@ class Profiles(Averaged):
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per layer."""
         names = [(f"{one.name}_{plain_unit(one.unit)}".rstrip("_"), one) for one in self.columns]
-        return [
-            dict[str, object](z_m=float(z), z_over_d=float(z) / self.d)
-            | {name: float(one.value[k]) for name, one in names}
-            | {f"{one.name}_error": float(one.error[k]) for _, one in names}
-            | {"phi_bed": float(self.bed[k])}
-            for k, z in enumerate(self.z)
-        ]
+        columns = {"z_m": self.z, "z_over_d": self.z / self.d}
+        columns |= {name: one.value for name, one in names}
+        columns |= {f"{one.name}_error": one.error for _, one in names}
+        return lines(columns | {"phi_bed": self.bed})
 
     def series(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
-        return [
-            {"t_s": float(t), "q_m2_per_s": float(q), "speed_m_per_s": float(u), "volume_m": float(h)}
-            for t, q, u, h in zip(self.t, self.q, self.speed, self.volume, strict=True)
-        ]
+        columns = {
+            "t_s": self.t, "q_m2_per_s": self.q, "speed_m_per_s": self.speed, "volume_m": self.volume
+        }  # fmt: skip
+        return lines(columns)
 
 
 def profiles(

@@ -11,6 +11,7 @@ from ryusa.catalogue import SIDES
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, scene_at, snapshot
+from ryusa.measure.table import lines
 from ryusa.model import Scene
 from ryusa.model.groups import groups
 from ryusa.model.near_pairs import near_pairs
@@ -129,10 +130,7 @@ class HeapSurface(ByShape):
 
     def samples(self) -> list[dict[str, object]]:
         """One dictionary per bin."""
-        return [
-            {"x_m": float(x), "z_m": float(z), "in_fit": bool(one)}
-            for x, z, one in zip(self.x, self.z, self.inside, strict=True)
-        ]
+        return lines({"x_m": self.x, "z_m": self.z, "in_fit": self.inside})
 
 
 def surface(

@@ -43,10 +43,6 @@ class Saltation(Averaged):
         """One dictionary per hop."""
         return rows_of(self.hops)
 
-    def rows(self) -> list[dict[str, object]]:
-        """One dictionary per average."""
-        return self.averages.rows()
-
 
 def saltation(
     run: Run,

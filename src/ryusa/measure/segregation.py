@@ -9,7 +9,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.slices_in_layers import frames_of_grains
 from ryusa.measure.statistics import average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model.scene import Bools
 
 EQUAL = 1.0e-9  # sizes that differ by less than this share are the same
@@ -42,16 +42,11 @@ class Segregation(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
-        return [
-            {
-                "t_s": float(t),
-                "z_all_m": float(self.z[k]),
-                "z_small_m": float(self.z_small[k]),
-                "z_large_m": float(self.z_large[k]),
-                "segregation_index": float(self.index[k]),
-            }
-            for k, t in enumerate(self.t)
-        ]
+        columns = {
+            "t_s": self.t, "z_all_m": self.z, "z_small_m": self.z_small, "z_large_m": self.z_large,
+            "segregation_index": self.index,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def segregation(

@@ -10,7 +10,7 @@ from ryusa.laws.torque import torque_in_range
 from ryusa.laws.water import log_law_rough
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 
 TURN = 2.0 * math.pi
 
@@ -43,17 +43,13 @@ class Spin(Averaged):
         """Ids of so many grains that travelled farthest along x up to the last frame, in that order."""
         return [int(g) for g in np.argsort(-np.abs(self.distance[-1]), kind="stable")[:count]]
 
-    def rows(self) -> list[dict[str, object]]:
-        """One dictionary per average."""
-        return self.averages.rows()
-
     def series(self) -> list[dict[str, object]]:
         """One dictionary per frame and grain."""
-        return [
-            {"grain": g, "t_s": float(t), "x_m": float(x), "omega_y_rad_per_s": float(omega)}
-            for g in range(self.omega.shape[1])
-            for t, x, omega in zip(self.t, self.distance[:, g], self.omega[:, g], strict=True)
-        ]
+        columns = {
+            "grain": np.arange(self.omega.shape[1])[:, None], "t_s": self.t, "x_m": self.distance.T,
+            "omega_y_rad_per_s": self.omega.T,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def spin(run: Run, settle: float | None = None) -> Spin:

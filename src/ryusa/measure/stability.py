@@ -19,6 +19,7 @@ from ryusa.laws.contact import damping
 from ryusa.laws.drag import added_mass, volume
 from ryusa.laws.hertz import modulus_for_stiffness, stiffness_hertz_for_overlap
 from ryusa.measure._run import Floats
+from ryusa.measure.table import lines
 from ryusa.printed import ByShape
 
 BAND = (0.001, 0.01)  # largest overlap over diameter: stiffer costs steps, softer trembles (Fig. 11)
@@ -178,16 +179,11 @@ class Chart(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per diameter and stiffness."""
-        return [
-            {
-                "d_m": float(d),
-                "k_n_N_per_m": float(k),
-                "time_s": float(self.time[i, j]),
-                "overlap_over_d": float(self.overlap[i, j]),
-            }
-            for i, d in enumerate(self.d)
-            for j, k in enumerate(self.k_n)
-        ]
+        columns = {
+            "d_m": self.d[:, None], "k_n_N_per_m": self.k_n, "time_s": self.time,
+            "overlap_over_d": self.overlap,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def chart(grain: Grain, d: Floats, k_n: Floats, band: tuple[float, float] = BAND) -> Chart:

@@ -100,8 +100,8 @@ class Averaged:
 
 
 def lines(columns: Mapping[str, Any]) -> list[dict[str, object]]:
-    """Arrays of one size as one dictionary for each of their elements, in order."""
-    values = [np.ravel(one).tolist() for one in columns.values()]
+    """Arrays as one dictionary for each of their elements, in order; they are broadcast to one shape."""
+    values = [np.ravel(one).tolist() for one in np.broadcast_arrays(*columns.values())]
     return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
+from ryusa.measure.table import lines
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
 from ryusa.printed import ByShape
@@ -46,11 +47,8 @@ class Tracks(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per frame and grain."""
-        return [
-            {"grain": g, "t_s": float(self.t[k]), "x_m": float(self.x[k, c]), "z_m": float(self.z[k, c])}
-            for c, g in enumerate(self.grains)
-            for k in range(len(self.t))
-        ]
+        grains = np.array(self.grains, np.int64)[:, None]
+        return lines({"grain": grains, "t_s": self.t, "x_m": self.x.T, "z_m": self.z.T})
 
 
 def tracks(

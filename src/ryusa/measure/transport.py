@@ -16,7 +16,7 @@ from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.slices_in_layers import CHUNK, U_X, cut_by_layers, sums_in_layers
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import Average, average, begin_in_words, ratio, standard_errors
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.measure.water import water
 from ryusa.model import Scene
 from ryusa.printed import ByShape
@@ -64,10 +64,7 @@ class Transport(Averaged):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per time between two frames."""
-        return [
-            {"t_s": float(t), "dt_s": float(dt), "q_m2_per_s": float(q), "q_star": float(s)}
-            for t, dt, q, s in zip(self.t, self.dt, self.q, self.q_star, strict=True)
-        ]
+        return lines({"t_s": self.t, "dt_s": self.dt, "q_m2_per_s": self.q, "q_star": self.q_star})
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,17 +88,12 @@ class KineticStress(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per layer."""
-        columns = [("temperature_m2_per_s2", self.temperature)]
-        columns += [(f"stress_{one.name}_Pa", one) for one in (self.xx, self.yy, self.zz, self.xz)]
+        layers = {"temperature_m2_per_s2": self.temperature}
+        layers |= {f"stress_{one.name}_Pa": one for one in (self.xx, self.yy, self.zz, self.xz)}
         z, d = self.profiles.z, self.profiles.d
-        return [
-            dict[str, object](
-                z_m=float(z[k]), z_over_d=float(z[k]) / d, phi=float(self.profiles.phi.value[k])
-            )
-            | {name: float(one.value[k]) for name, one in columns}
-            | {f"{name}_error": float(one.error[k]) for name, one in columns}
-            for k in range(len(z))
-        ]
+        columns = {"z_m": z, "z_over_d": z / d, "phi": self.profiles.phi.value}
+        columns |= {name: one.value for name, one in layers.items()}
+        return lines(columns | {f"{name}_error": one.error for name, one in layers.items()})
 
 
 def transport(

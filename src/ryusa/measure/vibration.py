@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
+from ryusa.measure.table import lines
 from ryusa.printed import ByShape
 
 WINDOW = 0.01  # [s], that of fig10
@@ -65,14 +66,11 @@ class Vibration(ByShape):
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per window and grain."""
-        columns = {"net_m": self.net, "span_z_m": self.span_z, "span_m": self.span, "turn_m": self.turn}
-        rows: list[dict[str, object]] = []
-        for k in range(len(self.end)):
-            for c, g in enumerate(self.grains):
-                row: dict[str, object] = {"grain": int(g), "begin_s": float(self.begin[k])}
-                row["end_s"] = float(self.end[k])
-                rows.append(row | {name: float(values[k, c]) for name, values in columns.items()})
-        return rows
+        columns = {
+            "grain": self.grains, "begin_s": self.begin[:, None], "end_s": self.end[:, None],
+            "net_m": self.net, "span_z_m": self.span_z, "span_m": self.span, "turn_m": self.turn,
+        }  # fmt: skip
+        return lines(columns)
 
 
 @dataclass(frozen=True, repr=False)

@@ -14,7 +14,7 @@ from ryusa.measure.layers import Layers, layers_mean
 from ryusa.measure.profiles import Profiles, profiles
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, begin_in_words
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import Scene
 
 CLEAR = 0.01  # concentration up to which water counts as clear
@@ -67,20 +67,12 @@ class WaterProfile(Averaged):
         """One dictionary per cell, from below; stress and eddy viscosity are the mean of its two faces."""
         tau, nu_t = (0.5 * (one.value[1:] + one.value[:-1]) for one in (self.tau, self.nu_t))
         v = np.interp(self.z, self.grains.z, self.grains.v_x.value, math.nan, math.nan)
-        return [
-            {
-                "z_m": float(self.z[k]),
-                "u_m_per_s": float(self.u.value[k]),
-                "u_error": float(self.u.error[k]),
-                "v_x_m_per_s": float(v[k]),
-                "phi": float(self.phi.value[k]),
-                "phi_error": float(self.phi.error[k]),
-                "tau_Pa": float(tau[k]),
-                "nu_t_m2_per_s": float(nu_t[k]),
-                "in_water": bool(self.z[k] < self.surface),
-            }
-            for k in range(len(self.z))
-        ]
+        columns = {
+            "z_m": self.z, "u_m_per_s": self.u.value, "u_error": self.u.error, "v_x_m_per_s": v,
+            "phi": self.phi.value, "phi_error": self.phi.error, "tau_Pa": tau, "nu_t_m2_per_s": nu_t,
+            "in_water": self.z < self.surface,
+        }  # fmt: skip
+        return lines(columns)
 
 
 def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterProfile:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.long_section import row_of
+from ryusa.measure.table import lines
 from ryusa.model.row_energy import CHANGES, ROW_GIFTS, ROW_LOSSES, RowTerm, row_imbalance
 from ryusa.printed import ByShape
 
@@ -72,7 +73,7 @@ class WaterEnergy(ByShape):
         for key, group in (("changed", self.changed), ("lost", self.lost), ("given", self.given)):
             columns |= {f"{key}_{name}_J_m": one for name, one in group.items()}
         columns["imbalance_J_m"] = self.imbalance
-        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+        return lines(columns)
 
 
 def water_energy(run: Run) -> WaterEnergy:

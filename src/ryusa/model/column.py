@@ -254,7 +254,6 @@ class Budget:
     grains: float  # force of the free grains
     carried: float  # part of the stress gradient that acts on the grains, with buoyancy `stress`
     surface: float  # momentum of water that passed through the surface
-    iterations: int  # of Newton's method
     fixed: float = 0.0  # force of the fixed grains
 
     @property
@@ -308,6 +307,18 @@ def refuse(
     >>> refuse(depth=-0.01)
     ('depth = -0.01 m: the surface lies below the bed; depth counts upwards from the bed',)
     """
+    faults = _faults_of_cells(depth, dz, n, z_low, z_bed)
+    if tau_star is not None and not tau_star > 0.0:
+        faults.append(f"tau_star = {tau_star:g}: must be above 0")
+    if u_star is not None and not u_star > 0.0:
+        faults.append(f"u_star = {u_star:g} m/s: must be above 0")
+    if faults:
+        return tuple(faults)
+    return _contradictions(depth, slope, tau_star, u_star, d, rho_s, rho_w, g)
+
+
+def _faults_of_cells(depth: float, dz: float | None, n: int | None, z_low: float, z_bed: float) -> list[str]:
+    """What is wrong with the cells of a column, as `refuse`."""
     faults: list[str] = []
     if not depth > 0.0:
         faults.append(
@@ -329,13 +340,7 @@ def refuse(
                 f"the column ends at {high:g} m, below the surface at {z_bed + depth:g} m: {need} cells of "
                 f"{dz:g} m reach it"
             )
-    if tau_star is not None and not tau_star > 0.0:
-        faults.append(f"tau_star = {tau_star:g}: must be above 0")
-    if u_star is not None and not u_star > 0.0:
-        faults.append(f"u_star = {u_star:g} m/s: must be above 0")
-    if faults:
-        return tuple(faults)
-    return _contradictions(depth, slope, tau_star, u_star, d, rho_s, rho_w, g)
+    return faults
 
 
 def _contradictions(

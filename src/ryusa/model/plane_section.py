@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.model.arrays import Floats
 from ryusa.model.scene import Scene
 from ryusa.model.wall_shape import in_world, triangles_of
+from ryusa.model.walls import across
 
 SIDES = 720  # of the polygon that stands for a round wall: its area is 1.3e-5 too small
 TURNS = 1440  # directions beside those of the ends of the lines
@@ -58,9 +59,8 @@ def rim_of(points: Floats, normal: Floats) -> tuple[Floats, float]:
 
 def _basis(normal: Floats) -> Floats:
     """Two unit vectors normal to one and to each other, in columns (3, 2)."""
-    across = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    across /= np.linalg.norm(across)
-    return np.asarray(np.stack([across, np.cross(normal, across)], axis=1), dtype=np.float64)
+    side = across(normal)
+    return np.asarray(np.stack([side, np.cross(normal, side)], axis=1), dtype=np.float64)
 
 
 def _lines_of_walls(

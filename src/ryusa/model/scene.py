@@ -250,6 +250,16 @@ class Scene(ByShape):
         return float(self.whole_grains()[0].mean())
 
     @property
+    def d_min(self) -> float:
+        """Smallest diameter of free and fixed grains [m]; inf without any."""
+        return float(np.concatenate([self.d, self.d_fixed]).min(initial=np.inf))
+
+    @property
+    def d_max(self) -> float:
+        """Largest diameter of free and fixed grains [m]; 0 without any."""
+        return float(np.concatenate([self.d, self.d_fixed]).max(initial=0.0))
+
+    @property
     def solid_volume(self) -> Floats:
         """Volume of each sphere [m3], shape (n_grain,); of a member of a clump its share of the clump."""
         ball = np.pi / 6.0 * self.d**3

@@ -45,6 +45,18 @@ class State(ByShape):
             x=x, v=np.zeros_like(x), omega=np.zeros_like(x), image=np.zeros((len(x), 2), dtype=np.int32)
         )
 
+    def block_of(self, engine: str, version: int) -> EngineBlock | None:
+        """Internal data of this state, where that engine wrote it.
+
+        Raises
+        ------
+        ValueError : it is of another version of the engine.
+        """
+        if self.engine is None or self.engine.engine != engine:
+            return None
+        self.engine.check(version)
+        return self.engine
+
     @property
     def n_grain(self) -> int:
         """Number of free grains."""

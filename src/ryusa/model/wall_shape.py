@@ -8,7 +8,7 @@ import numpy as np
 
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.arrays import Floats
-from ryusa.model.walls import FaceKind, Ints, Walls, corners_of_box, face_boxes, pose
+from ryusa.model.walls import FaceKind, Ints, Walls, across, corners_of_box, face_boxes, pose
 from ryusa.model.welding import sides_of, welded
 
 SIDES = 48
@@ -139,8 +139,7 @@ def within_periods(shapes: Floats, low: Floats, period: Floats) -> Floats:
 def _rings(face: Floats, sides: int) -> tuple[Floats, Floats]:
     """Points round the two ends of a round face, the last again the first, (sides + 1, 3) each."""
     centre, axis, radius, length = face[:3], face[3:6], float(face[6]), float(face[7])
-    side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
-    side /= np.linalg.norm(side)
+    side = across(axis)
     angle = 2.0 * math.pi * np.arange(sides + 1) / sides
     low = centre + radius * (np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(axis, side))
     return np.asarray(low, dtype=np.float64), np.asarray(low + length * axis, dtype=np.float64)
@@ -173,15 +172,14 @@ def nearest_on_face(face: Floats, kind: int, x: Floats) -> Floats:
         )
         return np.asarray(a + v * b + w * c)
     along = float(away @ b)
-    across = away - along * b
-    rho = float(np.linalg.norm(across))
+    beside = away - along * b
+    rho = float(np.linalg.norm(beside))
     if kind == FaceKind.DISC:
-        return np.asarray(a + nearest_on_disc(rho, float(c[0])) * across)
+        return np.asarray(a + nearest_on_disc(rho, float(c[0])) * beside)
     if rho == 0.0:  # on the axis every direction is as good
-        across, rho = np.cross(b, np.eye(3)[int(np.abs(b).argmin())]), 1.0
-        across /= np.linalg.norm(across)
+        beside, rho = across(b), 1.0
     h, factor = nearest_on_cylinder(along, rho, float(c[0]), float(c[1]))
-    return np.asarray(a + h * b + factor * across, dtype=np.float64)
+    return np.asarray(a + h * b + factor * beside, dtype=np.float64)
 
 
 def ways_to_faces(walls: Walls, faces: Ints, x: Floats, t: float, period: tuple[float, float]) -> Floats:

@@ -221,6 +221,12 @@ def face_boxes(face: Floats, kind: Ints) -> tuple[Floats, Floats]:
     return low, high
 
 
+def across(axis: Floats) -> Floats:
+    """A unit vector normal to another vector, shape (3,)."""
+    side = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    return np.asarray(side / np.linalg.norm(side), dtype=np.float64)
+
+
 def corners_of_box(low: Floats, high: Floats) -> Floats:
     """The eight corners of a box [m], (8, 3)."""
     unit = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])

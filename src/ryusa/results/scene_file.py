@@ -136,10 +136,7 @@ def scene_digest(scene: Scene) -> str:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
     for name in _datasets_of_bodies(scene.bodies):
         digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
-    for name, array in flow_arrays(scene.flow).items():
-        digest.update(f"{name} {array.shape} ".encode())
-        digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
-    for name, array in _arrays_of_arrivals(scene.traffic).items():
+    for name, array in (*flow_arrays(scene.flow).items(), *_arrays_of_arrivals(scene.traffic).items()):
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())

@@ -10,6 +10,7 @@ from ryusa.running.stops import Stop
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+    from ryusa.casefile.record.schema import RecordSection, StopSection
 
 
 def files_beside(case: "Case") -> dict[str, Path]:
@@ -85,12 +86,12 @@ def timeline_texts(case: "Case") -> list[str]:
     return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in entries]
 
 
-def stop_rule(case: "Case") -> Stop:
+def stop_rule(stop: "StopSection", record: "RecordSection") -> Stop:
     """When the run of this case ends."""
     return Stop(
-        time=math.inf if case.stop.time is None else case.stop.time,
-        rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
-        rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
-        saltations=case.stop.saltations, settle=case.record.settle,
-        precision=case.stop.precision.limits() if case.stop.precision else {},
+        time=math.inf if stop.time is None else stop.time,
+        rest_speed=stop.rest.speed if stop.rest else 0.0,
+        rest_for=stop.rest.duration if stop.rest else math.inf,
+        saltations=stop.saltations, settle=record.settle,
+        precision=stop.precision.limits() if stop.precision else {},
     )  # fmt: skip

@@ -217,16 +217,12 @@ class TrafficRule:
             turns.append(q)
             inside[spheres] = x_of
         came = np.concatenate([np.zeros(0, PASSAGE), *rows])
-        where = np.array(places).reshape(-1, 3)
+        where, q = np.array(places).reshape(-1, 3), np.array(turns).reshape(-1, 4)
         back = t - came["t"][:, None]
         a = fall(scene, came["grain"], where[:, 2], surface(where[:, 0]))
         speed = came["v"] + (back - 0.5 * scene.dt) * a  # that of half a step before
         came["momentum"] = came["m"][:, None] * speed
-        return (
-            came,
-            Entering(came["grain"], where, speed, came["omega"], np.array(turns).reshape(-1, 4)),
-            inside,
-        )
+        return came, Entering(came["grain"], where, speed, came["omega"], q), inside
 
     def _neighbours(self, scene: Scene, k: int, inside: Floats, t: float) -> Neighbours:
         feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt

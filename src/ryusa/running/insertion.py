@@ -10,7 +10,7 @@ from ryusa.model import BodyState, Feed, Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.wall_feeds import carrier_of, corners
 from ryusa.model.wall_shape import WallsAt
-from ryusa.model.walls import corners_of_box
+from ryusa.model.walls import across, corners_of_box
 from ryusa.water.eddies import draw
 
 Ints = NDArray[np.int64]
@@ -49,7 +49,7 @@ class Neighbours:
         reach : how far beyond the feed a centre may be placed [m].
         t : time [s].
         """
-        largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
+        largest = scene.d_max
         low, high = corners(feed)
         if (carrier := carrier_of(scene, feed.wall, t)) is not None:
             every = carrier.place(corners_of_box(low, high))
@@ -109,8 +109,7 @@ def drawn_place(feed: Feed, plane_case: bool, d: float, grain: int, step: int, a
     normal, free = np.array(feed.normal), feed.radius - 0.5 * d
     if plane_case:
         return np.array(feed.centre) + free * (2.0 * u[0] - 1.0) * np.array([normal[2], 0.0, -normal[0]])
-    side = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    side /= np.linalg.norm(side)
+    side = across(normal)
     other = np.cross(normal, side)
     far, turn = free * math.sqrt(u[0]), 2.0 * math.pi * u[1]
     return np.array(feed.centre) + far * (math.cos(turn) * side + math.sin(turn) * other)

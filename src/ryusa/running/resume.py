@@ -95,15 +95,9 @@ def find_resume_point(
         return None  # killed at its start
     changed = changes_of(was, resolved)
     complete = before.get("status") == schema.COMPLETE
-    hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
-    if hard:
-        state = "the run is complete, and " if complete else ""
-        made = "".join(f"; {one}" for one in _other_code(code_versions(before), code_versions(origin)))
-        way = "For" if complete else f"`ryusa resume {folder}` continues the run with its own case; for"
-        raise CheckpointError(
-            f"{folder}: {state}the case has changed since: {_some(hard)}{made}. "
-            f"{way} the changed case choose another folder with -o; {_ANEW}"
-        )
+    if hard := [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]:
+        other = _other_code(code_versions(before), code_versions(origin))
+        raise CheckpointError(_of_another_case(folder, hard, other, complete))
     scenes = read_scenes(folder)
     block, lost = _newest(folder, scenes[0][2].n_grain)
     written_by = {"code": code_versions(before)} if block is None else block.block("identity").values
@@ -133,6 +127,17 @@ def find_resume_point(
     _refuse_foreign(folder, block, was, identity, scenes)
     alike, said = exact and not differences, [] if exact else [_INEXACT.format(origin.get("engine")), *code]
     return _from_checkpoint(folder, before, scenes, block, [*lost, *differences, *said], alike=alike)
+
+
+def _of_another_case(folder: Path, hard: Sequence[str], other: Sequence[str], complete: bool) -> str:
+    """Say that a run is of another case, by keys that differ, and of other code."""
+    state = "the run is complete, and " if complete else ""
+    made = "".join(f"; {one}" for one in other)
+    way = "For" if complete else f"`ryusa resume {folder}` continues the run with its own case; for"
+    return (
+        f"{folder}: {state}the case has changed since: {_some(hard)}{made}. "
+        f"{way} the changed case choose another folder with -o; {_ANEW}"
+    )
 
 
 def _other_feeds(scene: Scene, case: Mapping[str, Any]) -> list[str]:

@@ -126,7 +126,7 @@ def run(
             make,
             Path(folder if folder is not None else Path("runs") / case.name),
             case.record.frames,
-            stop_rule(case),
+            stop_rule(case.stop, case.record),
             changes,
             _Options(threads, progress, overwrite, engine, checkpoint, resume, force),
             about,

@@ -16,6 +16,7 @@ import numpy as np
 
 from ryusa.model import EVENT, Scene
 from ryusa.model.wall_shape import in_world, triangles_of
+from ryusa.model.walls import across
 from ryusa.results import schema
 from ryusa.running.disk import hdf5_image, write_atomically
 
@@ -279,8 +280,7 @@ def _square(scene: Scene, k: int) -> np.ndarray:
     finite = [length for length in scene.period if np.isfinite(length)]
     d = np.concatenate([np.asarray(scene.d), np.asarray(scene.d_fixed)])
     half = max(finite) / 2 if finite else _PLANE_REACH * (float(d.max()) if len(d) else 1.0)
-    side = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    side /= np.linalg.norm(side)
+    side = across(normal)
     other = np.cross(normal, side)
     signs = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
     return np.array([point + half * (a * side + b * other) for a, b in signs])

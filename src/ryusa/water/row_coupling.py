@@ -64,13 +64,7 @@ class RowCoupling(Fluid):
 
     @staticmethod
     def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0, threads: int = 1) -> "RowCoupling":
-        """Fill the row with its first water, at rest or in steady flow over the grains.
-
-        Parameters
-        ----------
-        x : centres of the grains [m], shape (n_grain, 3).
-        step : of the engine.
-        threads : share the loops over grains; the bits do not depend on them.
+        """Fill the row with its first water, at rest or in steady flow; else as `Fluid.begin`.
 
         Raises
         ------
@@ -221,15 +215,9 @@ class RowCoupling(Fluid):
         return bed_thickness(parameters_of(self.row.column), np.ascontiguousarray(self.phi[0]))
 
     def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
-        """Raise a `GrainLost` for a grain beyond the ends of the row.
+        """Raise a `GrainLost` for a grain beyond the ends of the row; parameters as of `Fluid.refuse_lost`.
 
         To be called where no grain is on its way through an exit.
-
-        Parameters
-        ----------
-        x : centres of spheres and clumps [m], nan where one is away, shape (n, 3).
-        grains : their ids, shape (n,).
-        step, t : of the engine now, its time [s].
         """
         row = self.row
         if row.periodic:

@@ -204,12 +204,7 @@ class GrainsInRow:
         return other
 
     def among(self, x: Floats, state: RowState) -> "GrainsInRow":
-        """The same water at a step at which grains have entered or left, just after an exchange.
-
-        Parameters
-        ----------
-        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
-        """
+        """The same water at a step at which grains have entered or left; parameters as of `Fluid.among`."""
         other = GrainsInRow.begin(self.scene, self.row, x, state, self.threads)
         other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
         other.told.u_free[:] = self.told.u_free
@@ -284,15 +279,9 @@ class GrainsInRow:
         return replace(start, u=u, profiles=profiles, edges=edges)
 
     def exchange(self, state: RowState, x: Floats, v: Floats, impulse: Floats, dt: float) -> RowState:
-        """Give the water what the grains took in an interval, move it on, and tell the grains anew.
+        """Give the water `state` what the grains took in an interval dt [s], move it on, and tell the grains.
 
-        Parameters
-        ----------
-        state : the water in the interval.
-        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); nan for one that is
-            away.
-        impulse : what each took from the water in the interval, columns of `model.fluid`.
-        dt : the interval [s].
+        Parameters x, v and impulse are as of `Fluid.exchange`.
 
         Returns
         -------

@@ -121,7 +121,6 @@ def budget_of(out: Floats) -> Budget:
         grains=float(out[kernels.B_GRAINS]),
         carried=float(out[kernels.B_SHARED]),
         surface=float(out[kernels.B_SURFACE]),
-        iterations=int(out[kernels.ITERATIONS]),
         fixed=float(out[kernels.B_FIXED]),
     )
 

@@ -184,16 +184,7 @@ def carry_out_calibration(
     runs.make(first[:1], seeds[:1])  # one run shows whether the quantities are there and in which unit
     units = {one: runs.unit(one) for one in asked.targets}
     held = {one.target: one.in_si(units[one.target]) for one in asked.observations}
-    fit = _fitted(runs, runs.make(first, seeds), held)
-    extensions: list[PriorExtension] = []
-    for k in range(extend):
-        wider = _wider(runs, fit.verdict)
-        if not wider:
-            break
-        runs.widen(_replaced(runs.asked.priors, wider))
-        extensions += wider
-        more = points_beyond(wider, runs.asked.priors, asked.points // 2, asked.design_seed + k)
-        fit = _fitted(runs, [*fit.training, *runs.make(more, seeds)], held)
+    fit, extensions = _extended(runs, _fitted(runs, runs.make(first, seeds), held), held, extend)
     verdict, posterior = _possible(runs, fit.verdict), fit.posterior
     if verdict.reached and posterior.worth < LEAST:
         raise ResultsError(
@@ -207,7 +198,7 @@ def carry_out_calibration(
     coverage = cover(runs, held, fit.emulators, fit.values, truths) if truths else None
     return Calibration(
         runs.asked, folder, runs, tuple(fit.training), fit.emulators, posterior, verdict, predicted,
-        tuple(extensions), coverage,
+        extensions, coverage,
     )  # fmt: skip
 
 
@@ -235,6 +226,23 @@ def _fitted(runs: CaseRuns, training: list[SweepRun], held: Mapping[Target, Obse
     verdict = judge(posterior, seen, [values[one] for one in held], asked.seeds)
     edges = mark_limits(asked.priors, verdict.edges, runs.takes)
     return _Fit(training, emulators, values, posterior, replace(verdict, edges=edges))
+
+
+def _extended(
+    runs: CaseRuns, fit: _Fit, held: Mapping[Target, ObservedValue], extend: int
+) -> tuple[_Fit, tuple[PriorExtension, ...]]:
+    """Extend priors at whose edges the posterior lies, at most so many times, and fit anew each time."""
+    asked, extensions = runs.asked, list[PriorExtension]()
+    seeds = tuple(range(1, asked.seeds + 1))
+    for k in range(extend):
+        wider = _wider(runs, fit.verdict)
+        if not wider:
+            break
+        runs.widen(_replaced(runs.asked.priors, wider))
+        extensions += wider
+        more = points_beyond(wider, runs.asked.priors, asked.points // 2, asked.design_seed + k)
+        fit = _fitted(runs, [*fit.training, *runs.make(more, seeds)], held)
+    return fit, tuple(extensions)
 
 
 def _sampled(

@@ -16,6 +16,7 @@ from ryusa.study.task import CaseRun
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+    from ryusa.casefile.contact.schema import RollingSection
 
 LEAST_STEPS = 5.0  # per contact that a case may ask for
 
@@ -45,7 +46,7 @@ def refuse_if_not_softenable(case: "Case") -> None:
             "cannot be softened: a single impact follows closed forms; `ryusa design` prints its contact "
             "time and overlap over the stiffness",
         )  # fmt: skip
-    if (run := run_of_reach(case)) is not None:
+    if (run := run_of_reach(case.row)) is not None:
         raise CaseError(
             KEY, run, "cannot be softened: its reach has the stiffness of the case, and softer grains need a "
             "reach of their own",
@@ -80,7 +81,7 @@ def softened(one: CaseRun, factor: float) -> CaseRun:
     if factor == 1.0:
         return one
     case = one.read()
-    soft = _with(one, _contact(case, factor) | _rolling(case, factor) | _time(case))
+    soft = _with(one, _contact(case, factor) | _rolling(case.rolling, factor) | _time(case))
     return _with(soft, _interval(case, soft.read()))
 
 
@@ -103,8 +104,7 @@ def _contact(case: "Case", factor: float) -> dict[str, str]:
     return changed
 
 
-def _rolling(case: "Case", factor: float) -> dict[str, str]:
-    rolling = case.rolling
+def _rolling(rolling: "RollingSection", factor: float) -> dict[str, str]:
     model = Rolling.of(rolling.model)
     if model is Rolling.NONE or "spring" in model.marks:
         return {}

@@ -161,7 +161,7 @@ def _fill(case: Case, build: FillSection) -> Iterator[CaseError]:
 
 def _empty(case: Case, build: FillSection) -> CaseError:
     """A wall that holds no grain, and why it may be."""
-    enclosure, least = enclosure_of(case, build), room(case) * (1.0 + build.gap)
+    enclosure, least = enclosure_of(case.folder, case.walls, build), room(case) * (1.0 + build.gap)
     across = " x ".join(f"{one:.3g}" for one in enclosure.high - enclosure.low)
     whole = ", the cell of a sieve curve as a whole" if graded(case) else ""
     text = (

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.case import Case
 from ryusa.casefile.walls.mesh import Mesh, mesh_of
 from ryusa.casefile.walls.schema import WallSection
 from ryusa.errors import CaseError
@@ -40,7 +40,7 @@ class CellsInside:
     free: Floats
 
 
-def enclosure_of(case: Case, build: FillSection) -> Enclosure:
+def enclosure_of(folder: Path, walls: tuple[WallSection, ...], build: FillSection) -> Enclosure:
     """The inside of the wall that builder 'fill' names.
 
     Raises
@@ -48,12 +48,12 @@ def enclosure_of(case: Case, build: FillSection) -> Enclosure:
     CaseError : there is no such wall, it has no inside, or its mesh does not say what is inside.
     """
     assert build.inside is not None
-    names = [wall.name for wall in case.walls]
+    names = [wall.name for wall in walls]
     if build.inside not in names:
         allowed = f"must be one of [[walls]]: {', '.join(names) or 'there is none'}"
         raise CaseError("build.inside", build.inside, allowed, nearest_word(build.inside, names))
     number = names.index(build.inside)
-    wall, key = case.walls[number], f"walls.{number}"
+    wall, key = walls[number], f"walls.{number}"
     if wall.shape == "cylinder":
         if wall.at is None or wall.axis is None or wall.radius is None or not any(wall.axis):
             _refuse_missing(wall, key, ("at", "axis", "radius"))
@@ -65,7 +65,7 @@ def enclosure_of(case: Case, build: FillSection) -> Enclosure:
         raise CaseError("build.inside", wall.name, text.replace("a ridges", "a plate with ridges"))
     _refuse_missing(wall, key, ("file", "unit"))
     try:
-        return _inside_of_mesh(mesh_of(case.folder, wall, key))
+        return _inside_of_mesh(mesh_of(folder, wall, key))
     except MeshFault as error:
         raise CaseError("build.inside", wall.name, f"{error}; {_REMEDY}, or mend the mesh") from None
 

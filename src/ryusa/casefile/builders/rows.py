@@ -14,7 +14,7 @@ def fill_rows(case: Case) -> list[ExplainRow]:
     build = case.build
     if not isinstance(build, FillSection) or build.inside is None:
         return []
-    enclosure, name = enclosure_of(case, build), f"inside '{build.inside}'"
+    enclosure, name = enclosure_of(case.folder, case.walls, build), f"inside '{build.inside}'"
     what = "of a cylinder between its ends"
     if isinstance(enclosure, MeshInside):
         lids = f", with flat lids on its openings: {enclosure.lids}" if enclosure.lids else ""

@@ -228,7 +228,7 @@ def fill_box(build: FillSection) -> tuple[Corner, Corner]:
 def fill_inside(case: Case, build: FillSection) -> CellsInside:
     """Cells of builder 'fill' in the wall that it names; of a sieve curve, those that lie inside wholly."""
     pitch = room(case) * (1.0 + build.gap)
-    return cells_inside(enclosure_of(case, build), pitch, room(case), graded(case))
+    return cells_inside(enclosure_of(case.folder, case.walls, build), pitch, room(case), graded(case))
 
 
 def fill_count(case: Case, build: FillSection) -> int:

@@ -8,6 +8,7 @@ from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationS
 from ryusa.casefile.builders.values import periodic, size_range, sizes
 from ryusa.casefile.case import Case
 from ryusa.casefile.course import faults_of_course
+from ryusa.casefile.domain import DomainSection
 from ryusa.casefile.feeds.schema import ExitSection, FeedSection
 from ryusa.casefile.feeds.values import (
     FULLEST,
@@ -47,7 +48,7 @@ def check_traffic(case: Case) -> Iterator[CaseError]:
     if not shapes:
         for k, feed in enumerate(case.feeds):
             yield from _feed(case, f"feeds.{k}", feed)
-        yield from _targets(case)
+        yield from _targets(case.feeds, case.domain)
         for k, one in enumerate(case.exits):
             yield from _reach(case, f"exits.{k}", one)
 
@@ -267,10 +268,10 @@ def _rate(case: Case, key: str, feed: FeedSection) -> Iterator[CaseError]:
         )  # fmt: skip
 
 
-def _targets(case: Case) -> Iterator[CaseError]:
+def _targets(feeds: tuple[FeedSection, ...], domain: DomainSection) -> Iterator[CaseError]:
     """Find feeds outside the domain that the case gives."""
-    low, high = case.domain.low, case.domain.high
-    for k, feed in enumerate(case.feeds):
+    low, high = domain.low, domain.high
+    for k, feed in enumerate(feeds):
         for x in _points(feed):
             if (low is not None and any(a < b for a, b in zip(x, low, strict=True))) or (
                 high is not None and any(a > b for a, b in zip(x, high, strict=True))

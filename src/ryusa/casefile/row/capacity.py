@@ -87,7 +87,7 @@ def dam_deposit(case: Case, dam: RowDamSection) -> DamDeposit | None:
     back = {one.to for one in case.exits}
     odd = any(one.material is not None or one.name in back for _, one in feeds)
     odd = odd or any(one.discharge is not None for one in case.timeline) or hydrograph_of(case) is not None
-    odd = odd or fed_by_reach(case)
+    odd = odd or fed_by_reach(case.row)
     if keys is None or width is None or dam.concentration is not None or not feeds or odd:
         return None
     start = max(at for at, _ in feeds)

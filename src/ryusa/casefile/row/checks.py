@@ -59,9 +59,9 @@ def check_row(case: Case) -> Iterator[CaseError]:
             f"take '{Pressure.HYDROSTATIC.word}', or [[feeds]] of grains that fall in",
         )  # fmt: skip
     if stream(case):
-        found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(case.column)]
+        found = [*check_stream(case, keys), *_ending(case), *_water(water), *_driver(case.column)]
     elif water_alone(case):
-        found = [*_grains(case), *_ending(case), *_water(case, water), *_column(case.column)]
+        found = [*_grains(case), *_ending(case), *_water(water), *_column(case.column)]
     else:
         yield from _among_grains(case, keys)
         return
@@ -131,7 +131,7 @@ def _ending(case: Case) -> Iterator[CaseError]:
         yield CaseError("motion.gravity", case.motion.gravity, "must be above 0: a row has a free surface")
 
 
-def _water(case: Case, water: WaterSection) -> Iterator[CaseError]:
+def _water(water: WaterSection) -> Iterator[CaseError]:
     """Keys of [water] that mean something else in a row, or nothing."""
     for key in ("tau_star", "u_star"):
         if getattr(water, key) is not None:
@@ -208,7 +208,7 @@ def _lines(case: Case, keys: RowSection, water: WaterSection) -> Iterator[CaseEr
     for name, one in lines:
         key = f"water.row.{name}"
         try:
-            points = line_points(case, key, one)
+            points = line_points(case.folder, key, one)
         except CaseError as error:
             yield error
             return
@@ -221,7 +221,7 @@ def _lines(case: Case, keys: RowSection, water: WaterSection) -> Iterator[CaseEr
             return
     if keys.surface is not None:
         low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
-        points = line_points(case, "water.row.surface", keys.surface)
+        points = line_points(case.folder, "water.row.surface", keys.surface)
         if points[0][0] > low or points[-1][0] < high:
             yield CaseError(
                 "water.row.surface", None, f"reaches from x = {points[0][0]:g} to {points[-1][0]:g} m; must "

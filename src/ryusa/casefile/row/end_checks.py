@@ -91,7 +91,8 @@ def check_courses(case: Case) -> Iterator[CaseError]:
         if any(getattr(one, other) is not None for one in case.timeline):
             yield CaseError(key, None, f"stands beside a {other} in [[timeline]]: give one of them")
         given = getattr(end, name)
-        points = hydrograph_points(case, given) if name == "hydrograph" else stage_points(case, given)
+        read = hydrograph_points if name == "hydrograph" else stage_points
+        points = read(case.folder, given)
         wrong = [*faults_of_course(key, points)]
         yield from wrong
         if name == "hydrograph" and not wrong:

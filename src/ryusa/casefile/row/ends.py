@@ -1,6 +1,7 @@
 """What enters a row upstream and what lies beyond its ends: discharge and level, constant or over time."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 from ryusa.casefile.case import Case
@@ -17,7 +18,7 @@ def discharge_of(case: Case) -> float:
     """Discharge per width that enters upstream [m2/s]; nan where none is given."""
     if (reach := reach_of(case)) is not None:
         return reach.discharge
-    end = _row(case).upstream
+    end = keys_of_row(case).upstream
     if (course := hydrograph_of(case)) is not None:
         return course.at(0.0)
     if end is None or end.discharge is None:
@@ -27,29 +28,29 @@ def discharge_of(case: Case) -> float:
 
 def hydrograph_of(case: Case) -> Course | None:
     """Discharge per width over time [m2/s] that enters upstream; None where none is given."""
-    end = _row(case).upstream
+    end = keys_of_row(case).upstream
     if end is None or end.hydrograph is None:
         return None
-    points = hydrograph_points(case, end.hydrograph)
+    points = hydrograph_points(case.folder, end.hydrograph)
     return Course(tuple(t for t, _ in points), tuple(per_width(case, q) for _, q in points))
 
 
-def hydrograph_points(case: Case, given: Any) -> Points:
+def hydrograph_points(folder: Path, given: Any) -> Points:
     """Points of a hydrograph as given, or as its file holds them."""
-    return points_of(case.folder, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
+    return points_of(folder, HYDROGRAPH, given, "q", read_discharge, "'t [s],q [m3/s]'")
 
 
 def stage_of(case: Case) -> Course | None:
     """Height of the surface beyond the lower end over time [m]; None where none is given."""
-    end = _row(case).downstream
+    end = keys_of_row(case).downstream
     if end is None or end.stage is None:
         return None
-    return Course(*map(tuple, zip(*stage_points(case, end.stage), strict=True)))  # pyright: ignore[reportArgumentType]
+    return Course(*map(tuple, zip(*stage_points(case.folder, end.stage), strict=True)))  # pyright: ignore[reportArgumentType]
 
 
-def stage_points(case: Case, given: Any) -> Points:
+def stage_points(folder: Path, given: Any) -> Points:
     """Points of a stage as given, or as its file holds them."""
-    return points_of(case.folder, STAGE, given, "z", _metres, "'t [s],z [m]'")
+    return points_of(folder, STAGE, given, "z", _metres, "'t [s],z [m]'")
 
 
 def _metres(value: str) -> float:
@@ -58,7 +59,7 @@ def _metres(value: str) -> float:
 
 def levels_of(case: Case, end: RowEndSection) -> list[float]:
     """Heights of the surface beyond an end during a run [m], that of the start first; none elsewhere."""
-    row, first = _row(case), [] if end.level is None else [end.level]
+    row, first = keys_of_row(case), [] if end.level is None else [end.level]
     if end is not row.downstream:
         return first
     if (course := stage_of(case)) is not None:
@@ -94,10 +95,11 @@ def _discharges(case: Case) -> list[float]:
 
 def width_of(case: Case) -> float | None:
     """Width of the stream [m]; None if not given."""
-    return _row(case).width or case.column.side_walls
+    return keys_of_row(case).width or case.column.side_walls
 
 
-def _row(case: Case) -> RowSection:
+def keys_of_row(case: Case) -> RowSection:
+    """Keys of [water.row] of a case that has one."""
     keys = case.row
     assert keys is not None
     return keys

@@ -33,17 +33,16 @@ def hydrograph_rows(case: Case) -> list[ExplainRow]:
         if one.level is not None
     ]
     if (course := hydrograph_of(case)) is not None:
-        rows.append(_course(case, "hydrograph", course, "m2/s", HYDROGRAPH))
+        rows.append(_course(case.stop.time or math.inf, "hydrograph", course, "m2/s", HYDROGRAPH))
         volume = course.total(case.stop.time or 0.0) - course.total(0.0)
         rows.append(number("water", "water that enters", volume, "m2", f"per width; {HYDROGRAPH}"))
     if (course := stage_of(case)) is not None:
-        rows.append(_course(case, "stage downstream", course, "m", STAGE))
+        rows.append(_course(case.stop.time or math.inf, "stage downstream", course, "m", STAGE))
     return rows
 
 
-def _course(case: Case, name: str, course: Course, unit: str, key: str) -> ExplainRow:
+def _course(end: float, name: str, course: Course, unit: str, key: str) -> ExplainRow:
     """A course from its first point to its last."""
-    end = case.stop.time or math.inf
     text = f"{min(course.y):.4g} to {max(course.y):.4g} {unit}"
     late = f"; the run ends at {end:g} s" if end < course.t[-1] else ""
     early = f"; constant from {course.t[-1]:g} s on" if end > course.t[-1] else ""

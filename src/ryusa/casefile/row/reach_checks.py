@@ -38,7 +38,7 @@ def check_reach(case: Case) -> Iterator[CaseError]:
             yield CaseError(f"water.row.{side}.run", end.run, f"has no effect with end '{end.end}'")
         if end.end == END and side == "upstream" and end.run is None:
             yield CaseError(KEY, None, f"missing; end '{END}' needs the run folder of the reach")
-    name = run_of_reach(case)
+    name = run_of_reach(case.row)
     if name is None:
         return
     if not stream(case):

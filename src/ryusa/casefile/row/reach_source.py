@@ -11,22 +11,22 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.files import inside
 from ryusa.casefile.row.reach import END, KEY, FeederReach, digest_of
 from ryusa.casefile.row.reach_record import supplied
+from ryusa.casefile.row.schema import RowSection
 from ryusa.errors import CaseError, ResultsError
 from ryusa.model.arrays import Floats
 
 _SHIFT = 0x5245  # tells the lateral shifts from other numbers drawn from the seed
 
 
-def run_of_reach(case: Case) -> str | None:
+def run_of_reach(row: RowSection | None) -> str | None:
     """Run folder of the feeder reach at the upper end of the row of a case; None without one."""
-    keys = case.row
-    end = None if keys is None else keys.upstream
+    end = None if row is None else row.upstream
     return end.run if end is not None and end.end == END else None
 
 
-def fed_by_reach(case: Case) -> bool:
+def fed_by_reach(row: RowSection | None) -> bool:
     """Whether a feeder reach supplies the upper end of the row of a case."""
-    return run_of_reach(case) is not None
+    return run_of_reach(row) is not None
 
 
 def reach_of(case: Case) -> FeederReach | None:
@@ -36,7 +36,7 @@ def reach_of(case: Case) -> FeederReach | None:
     ------
     CaseError : it cannot be read, or supplies nothing.
     """
-    name = run_of_reach(case)
+    name = run_of_reach(case.row)
     if name is None:
         return None
     from ryusa.results import schema

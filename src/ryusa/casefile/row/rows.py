@@ -229,7 +229,7 @@ def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         first, end = dam_span(plan, dam)
         crest = crest_of(plan, dam)
         high = crest - float(plan.bottom[first:end].min())
-        kept, flag = _in_whole_cells(case, dam, plan, crest)
+        kept, flag = _in_whole_cells(dam, plan, crest)
         kind = "impermeable" if dam.concentration is None else f"porous, concentration {dam.concentration:g}"
         rows.append(
             number(
@@ -252,7 +252,7 @@ def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     return rows
 
 
-def _in_whole_cells(case: Case, dam: RowDamSection, plan: RowPlan, crest: float) -> tuple[str, Flag]:
+def _in_whole_cells(dam: RowDamSection, plan: RowPlan, crest: float) -> tuple[str, Flag]:
     """Say where the crest of an impermeable dam lies for the water, whose cells it takes whole."""
     first, end = dam_span(plan, dam)
     if dam.concentration is not None or end == first:

@@ -65,7 +65,7 @@ def check_stream(case: Case, keys: RowSection) -> Iterator[CaseError]:
 def _bed(case: Case, line: Points | str) -> Iterator[CaseError]:
     """Find points of the thickness of the bed that do not follow one another, or lie below the bottom."""
     try:
-        points = line_points(case, "build.bed", line)
+        points = line_points(case.folder, "build.bed", line)
     except CaseError as error:
         yield error
         return
@@ -171,7 +171,7 @@ def check_places(case: Case, keys: RowSection) -> Iterator[CaseError]:
     assert isinstance(build, StreamSection)
     low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
     begin, end = stream_span(case)
-    fed = fed_by_reach(case) or any(feed.brings for feed in case.feeds)
+    fed = fed_by_reach(case.row) or any(feed.brings for feed in case.feeds)
     if build.bed == 0.0 and not fed:
         yield CaseError(
             "build.bed", None, "gives no grain, and no feed brings one: give a thickness, or [[feeds]]"

@@ -16,9 +16,9 @@ from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.backwater import backwater, bore_depth, level_of_basin
-from ryusa.casefile.row.ends import levels_of, peak_discharge, width_of
+from ryusa.casefile.row.ends import keys_of_row, levels_of, peak_discharge, width_of
 from ryusa.casefile.row.reach_source import reach_of
-from ryusa.casefile.row.schema import RowDamSection, RowSection
+from ryusa.casefile.row.schema import RowDamSection
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
 from ryusa.model.arrays import Floats
@@ -58,7 +58,7 @@ class Reach:
     froude: float  # of normal flow [-]
 
 
-def line_points(case: Case, key: str, given: Points | str) -> Points:
+def line_points(folder: Path, key: str, given: Points | str) -> Points:
     """Points of a line as given, or as its file holds them.
 
     Raises
@@ -67,7 +67,7 @@ def line_points(case: Case, key: str, given: Points | str) -> Points:
     """
     if not isinstance(given, str):
         return given
-    return contents(case.folder, key, given, inside(case.folder, key, given), _read)
+    return contents(folder, key, given, inside(folder, key, given), _read)
 
 
 @lru_cache(maxsize=4)
@@ -96,12 +96,12 @@ def line_files(case: Case) -> list[str]:
 
 def bottom_points(case: Case) -> Points:
     """Points of the bottom [m]."""
-    return line_points(case, "water.row.bottom", _row(case).bottom)
+    return line_points(case.folder, "water.row.bottom", keys_of_row(case).bottom)
 
 
 def segments_of(case: Case) -> tuple[float, float, int]:
     """Where the row begins [m], the length of a segment [m], and how many there are."""
-    keys, points = _row(case), bottom_points(case)
+    keys, points = keys_of_row(case), bottom_points(case)
     length = points[-1][0] - points[0][0]
     count = keys.segments or max(round(length / (keys.segment or length)), 1)
     return points[0][0], length / count, count
@@ -119,7 +119,7 @@ def stream(case: Case) -> bool:
 
 def walls_of_stream(case: Case) -> tuple[str, ...]:
     """Names of the walls that builder 'stream' makes for grains and water: the bottom, and the dams."""
-    return ("bottom", *(dam.name for dam in _row(case).dams)) if stream(case) else ()
+    return ("bottom", *(dam.name for dam in keys_of_row(case).dams)) if stream(case) else ()
 
 
 def stream_span(case: Case) -> tuple[float, float]:
@@ -149,7 +149,7 @@ def bed_points(case: Case) -> Points:
 def _bed_line(case: Case, given: Points | str | BedOfRunSection) -> Points:
     """Points of x and thickness [m] as given; of a run, those of its grains packed in each segment."""
     if not isinstance(given, BedOfRunSection):
-        return line_points(case, "build.bed", given)
+        return line_points(case.folder, "build.bed", given)
     table, (x_low, dx, n) = table_of(case), segments_of(case)
     assert table is not None
     x, d = table.column("x"), table.column("d")
@@ -193,9 +193,9 @@ def _plan(
 
 def row_plan(case: Case) -> RowPlan:
     """Segments, cells, bottom and first surface of the row of a case."""
-    keys, wet = _row(case), case.water
+    keys, wet = keys_of_row(case), case.water
     assert wet is not None
-    surface = None if keys.surface is None else line_points(case, "water.row.surface", keys.surface)
+    surface = None if keys.surface is None else line_points(case.folder, "water.row.surface", keys.surface)
     about, cell = segments_of(case), cell_of(case)
     bed = bed_points(case) if case.build.kind == "stream" else ((0.0, 0.0),)
     first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell, bed)
@@ -255,7 +255,7 @@ def inlet_tilt(case: Case) -> float:
 
 def inlet_depth(case: Case) -> float | None:
     """Depth of the water that enters, along z over a bed there [m]; None where it is that of the row."""
-    reach, end = reach_of(case), _row(case).upstream
+    reach, end = reach_of(case), keys_of_row(case).upstream
     if reach is None:
         return None if end is None else end.depth
     return reach.depth / math.cos(inlet_tilt(case)) if reach_froude(case) > 1.0 else None
@@ -271,7 +271,7 @@ def reach_froude(case: Case) -> float:
 
 def deepest(case: Case, plan: RowPlan) -> float:
     """Largest depth to be expected [m]: at the start, of flow on the bed, behind dams, below levels."""
-    keys, q = _row(case), peak_discharge(case)
+    keys, q = keys_of_row(case), peak_discharge(case)
     critical, bed = critical_depth(case, q), bed_over(case, plan.x)
     found = [float((plan.start - plan.bottom).max()), critical + float(bed.max())]
     for one in reaches(case, q):
@@ -296,7 +296,7 @@ def deepest(case: Case, plan: RowPlan) -> float:
 
 def highest_water(case: Case, plan: RowPlan) -> float:
     """Depth that the water may reach in a run [m]: `deepest`, backwater, bores, and closed basins."""
-    keys, wet, q = _row(case), case.water, peak_discharge(case)
+    keys, wet, q = keys_of_row(case), case.water, peak_discharge(case)
     found = deepest(case, plan)
     if wet is None or keys.upstream is None or keys.downstream is None:
         return found
@@ -326,7 +326,7 @@ def highest_water(case: Case, plan: RowPlan) -> float:
 
 def jumping(case: Case, q: float) -> list[Reach]:
     """Reaches where a discharge [m2/s] is supercritical and has subcritical water somewhere below it."""
-    keys, found = _row(case), reaches(case, q)
+    keys, found = keys_of_row(case), reaches(case, q)
     held = keys.downstream is not None and keys.downstream.end in ("wall", "level")
     return [
         one
@@ -370,9 +370,3 @@ def water_step(case: Case) -> float:
     longest = COURANT * plan.dx / fastest(case, plan) if fastest(case, plan) > 0.0 else math.inf
     frames = case.record.frames
     return frames / max(math.ceil(frames / longest - 1e-9), 1)
-
-
-def _row(case: Case) -> RowSection:
-    keys = case.row
-    assert keys is not None
-    return keys

@@ -12,6 +12,7 @@ from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 from ryusa.laws.walls import turned_about
 from ryusa.model.arrays import Floats
+from ryusa.model.walls import FaceKind, face_boxes
 from ryusa.model.welding import first_of_each, flipped_sides, rims, welded
 from ryusa.units import quantity
 
@@ -113,8 +114,9 @@ def box_of(folder: Path, wall: WallSection, key: str) -> tuple[Floats, Floats]:
         up *= (wall.height or 0.0) / np.linalg.norm(up)
         ends = at + np.array([a * one + b * other + c * up for a, b, c in np.ndindex(2, 2, 2)])
         return ends.min(axis=0), ends.max(axis=0)
+    kind = FaceKind.DISC if wall.axis is None else FaceKind.CYLINDER
     along = np.array(wall.axis or wall.normal or (0.0, 0.0, 1.0))
-    n = along / np.linalg.norm(along)
-    across = (wall.radius or 0.0) * np.sqrt(np.maximum(1.0 - n**2, 0.0))
-    end = at + along if wall.axis is not None else at
-    return np.minimum(at, end) - across, np.maximum(at, end) + across
+    length = float(np.linalg.norm(along))
+    face = np.concatenate([at, along / length, [wall.radius or 0.0, length, 0.0]])
+    low, high = face_boxes(face[None], np.array([kind]))
+    return low[0], high[0]

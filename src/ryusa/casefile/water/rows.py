@@ -36,13 +36,13 @@ def water_rows(case: Case, derived: Derived, origin: str) -> list[ExplainRow]:
             number("water", "grain Re", re, "-", "settling velocity times d/nu"),
         ]
         if case.grains.density > wet.density and derived.g > 0.0:
-            rows.append(_of_natural_sand(case, derived, wet, settling))
+            rows.append(_of_natural_sand(case.grains.density, derived, wet, settling))
     return [*rows, *_of_clumps(case, derived, wet)]
 
 
-def _of_natural_sand(case: Case, derived: Derived, wet: WaterSection, settling: float) -> ExplainRow:
+def _of_natural_sand(density: float, derived: Derived, wet: WaterSection, settling: float) -> ExplainRow:
     """Settling velocity of natural sand of the mean diameter, beside that of the grains of the case."""
-    ratio = case.grains.density / wet.density - 1.0
+    ratio = density / wet.density - 1.0
     sand = drag.terminal_velocity_ferguson_church(ratio, derived.g, derived.d, wet.viscosity, 18.0, 1.0)
     origin, apart = "Ferguson & Church 2004, of this diameter", settling / sand - 1.0
     far: Flag = "note" if abs(apart) > APART else ""

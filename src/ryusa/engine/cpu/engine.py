@@ -47,7 +47,7 @@ from ryusa.engine.shared.energy_account import (
 from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.shared.layout import film_reach
 from ryusa.engine.shared.materials import common_parameters, material_arrays
-from ryusa.engine.shared.refusals import check_state, refusals
+from ryusa.engine.shared.refusals import check_sampled, check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_PAIR, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
@@ -111,7 +111,7 @@ class CpuEngine:
         self._bodies = None
         if scene.bodies is not None and state.bodies is not None:
             self._bodies = body_arrays(scene, scene.bodies, state.bodies)
-        self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+        self._smallest = scene.d_min
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
         self._accounts = AccountArrays(
@@ -216,20 +216,8 @@ class CpuEngine:
         return x, v, impulse
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Set the water at every grain for the next steps, and count its impulse anew.
-
-        Parameters
-        ----------
-        sampled : by id, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
-
-        Raises
-        ------
-        ValueError : the scene has no column of water, or the shape is another.
-        """
-        if not self._variant.column:
-            raise ValueError("the scene has no column of water: water.profile is not COLUMN")
-        if sampled.shape != self._grains.fluid.shape:
-            raise ValueError(f"sampled has shape {sampled.shape}, not {self._grains.fluid.shape}")
+        """Set the water at every grain for the next steps, and count its impulse anew."""
+        check_sampled(sampled, self._grains.fluid.shape if self._variant.column else None)
         grains, ids = self._grains, self._grains.ids[: self._n]
         if self._step and not same_column(ids, sampled, grains.fluid, SUBMERGED):
             # energy of the water that moves along with a grain, or no longer does
@@ -246,9 +234,7 @@ class CpuEngine:
         grains.impulse[:] = 0.0
 
     def set_walls(self, motion: Floats) -> None:
-        """Set the motion of the walls from this step on (model.walls), shape (n_wall, N_MOTION).
-
-        Walls are where they were, and no faster than the scene says; a snapshot does not carry the motion.
+        """Set the motion of the walls from this step on, as `Engine.set_walls`.
 
         Raises
         ------
@@ -268,8 +254,7 @@ class CpuEngine:
     def events(self) -> np.ndarray:
         """Contacts ended since the last call, in order of parting."""
         self._drain_records()
-        rows = np.concatenate(self._records_drained) if self._records_drained else np.zeros((0, N_EVENT))
-        self._records_drained = []
+        rows, self._records_drained = self._records_drained, []
         return sorted_events(rows)
 
     def _advance(self, n_steps: int) -> Flags:
@@ -406,10 +391,9 @@ class CpuEngine:
         ------
         ValueError : the block has another version, or a value out of range.
         """
-        own = state.engine if state.engine is not None and state.engine.engine == self.name else None
+        own = state.block_of(self.name, VERSION)
         self._skin, self._since = self._skin_first * self._smallest, 0
         if own is not None:
-            own.check(VERSION)
             self._skin = own.number("skin", 0.0, max(self._most_skin(), self._layout.largest))
             self._since = int(own.number("since", 0.0, state.step))
         read_account(state, self._accounts.stats, self._accounts.terms, own)

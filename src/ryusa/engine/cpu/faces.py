@@ -9,7 +9,7 @@ from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.wall_pose import N_POSE, NOW
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.scene import Floats
-from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
+from ryusa.model.walls import FaceKind, Walls, across, face_boxes, largest_speed
 
 # columns of a face: a corner or centre, two edges or axes, the unit normal, and
 A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
@@ -129,16 +129,13 @@ def _rows(walls: Walls) -> Floats:
     rows[:, :9], rows[:, KIND], rows[:, WALL] = walls.face, walls.kind, walls.wall
     b, c = walls.face[:, 3:6], walls.face[:, 6:9]
     flat = walls.kind == TRIANGLE
-    across = np.cross(b, c)
-    rows[:, NORMAL : NORMAL + 3] = np.where(flat[:, None], across, b)
+    rows[:, NORMAL : NORMAL + 3] = np.where(flat[:, None], np.cross(b, c), b)
     length = np.linalg.norm(rows[:, NORMAL : NORMAL + 3], axis=1)
     rows[:, NORMAL : NORMAL + 3] /= length[:, None]
     rows[:, S_11] = np.where(flat, np.sum(b * b, axis=1), c[:, 0])
     rows[:, S_12] = np.where(flat, np.sum(b * c, axis=1), c[:, 1])
     for f in np.flatnonzero(~flat):  # some direction across the axis, for a point on it
-        axis = rows[f, NORMAL : NORMAL + 3]
-        side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
-        rows[f, EDGE_2 : EDGE_2 + 3] = side / np.linalg.norm(side)
+        rows[f, EDGE_2 : EDGE_2 + 3] = across(rows[f, NORMAL : NORMAL + 3])
     return rows
 
 

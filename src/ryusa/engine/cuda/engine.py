@@ -30,7 +30,7 @@ from ryusa.engine.shared.energy_account import (
 from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.shared.layout import film_reach
 from ryusa.engine.shared.parameters import parameters_of
-from ryusa.engine.shared.refusals import check_state, refusals
+from ryusa.engine.shared.refusals import check_sampled, check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
@@ -94,7 +94,7 @@ class CudaEngine:
             self._close_kernel = make_close_kicks(shape())
             self._shear_kernel = make_shear(self._variant, self._choice, shape())
             self._close_shear_kernel = make_close_shear(shape())
-        self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+        self._smallest = scene.d_min
         self._parameters = parameters_of(scene)
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         self._room = n + _RECORDS if scene.events != EventRule.NONE else 1
@@ -199,20 +199,10 @@ class CudaEngine:
         raise ValueError("the cuda engine has no [[walls]]")
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Set the water at every grain for the next steps, and count its impulse anew.
-
-        Parameters
-        ----------
-        sampled : by id, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
-
-        Raises
-        ------
-        ValueError : the scene has no column of water, or the shape is another.
-        """
-        if self._fluid is None or self._scene is None:
-            raise ValueError("the scene has no column of water: water.profile is not COLUMN")
-        if sampled.shape != self._fluid.shape:
-            raise ValueError(f"sampled has shape {sampled.shape}, not {self._fluid.shape}")
+        """Set the water at every grain for the next steps, and count its impulse anew."""
+        check_sampled(sampled, None if self._fluid is None else self._fluid.shape)
+        assert self._fluid is not None
+        assert self._scene is not None
         device, ids = self._device, self._device.ids()
         more = sampled[:, SUBMERGED] - self._fluid[:, SUBMERGED]
         if self._step and more.any():  # energy of the water that moves along with a grain, or no longer does
@@ -232,8 +222,7 @@ class CudaEngine:
     def events(self) -> np.ndarray:
         """Contacts ended since the last call, in order of parting."""
         self._drain_records()
-        rows = np.concatenate(self._records_drained) if self._records_drained else np.zeros((0, N_EVENT))
-        self._records_drained = []
+        rows, self._records_drained = self._records_drained, []
         return sorted_events(rows)
 
     @property
@@ -376,12 +365,10 @@ class CudaEngine:
         ------
         ValueError : the block has another version, or a value out of range.
         """
-        own = state.engine if state.engine is not None and state.engine.engine == self.name else None
+        own = state.block_of(self.name, VERSION)
         self._skin, self._since = self._skin_first * self._smallest, 0
         if own is not None and self._scene is not None:
-            own.check(VERSION)
-            largest = float(np.concatenate([self._scene.d, self._scene.d_fixed]).max(initial=0.0))
-            self._skin = own.number("skin", 0.0, largest)
+            self._skin = own.number("skin", 0.0, self._scene.d_max)
             self._since = int(own.number("since", 0.0, state.step))
         return own
 

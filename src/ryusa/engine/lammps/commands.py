@@ -40,7 +40,7 @@ def box(scene: Scene, types: GrainTypes, x: Floats) -> list[str]:
     types : of the grains.
     x : centres of free and fixed grains [m], shape (n, 3).
     """
-    largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
+    largest = scene.d_max
     low, high = x.min(axis=0) - _MARGIN * largest, x.max(axis=0) + _MARGIN * largest
     sides = ["m", "m", "m"]  # they follow the grains outwards
     for axis, period in enumerate(scene.period):

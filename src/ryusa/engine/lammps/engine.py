@@ -11,7 +11,7 @@ from ryusa.engine.lammps.ranks import Ranks
 from ryusa.engine.lammps.refusals import refusals_of_change, refusals_of_lammps
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared.energy_account import potential_energy
-from ryusa.engine.shared.refusals import check_state, refusals
+from ryusa.engine.shared.refusals import check_sampled, check_state, refusals
 from ryusa.errors import NotANumber, RunError, WaterError
 from ryusa.laws.families import Profile
 from ryusa.model import EVENT, EngineBlock, Scene, State, Tally, Term
@@ -77,9 +77,8 @@ class LammpsEngine:
         self._overlap, restart = (0.0, -1, 0), None
         self._failed, self._last = False, None
         self._image = state.image if len(state.image) else np.zeros((scene.n_grain, 2), np.int32)
-        block = state.engine if state.engine is not None and state.engine.engine == self.name else None
+        block = state.block_of(self.name, VERSION)
         if block is not None:
-            block.check(VERSION)
             words = block.arrays["restart"]
             restart = words.astype(np.uint32).tobytes()[: int(block.number("bytes", 0, _WORD * len(words)))]
             self._overlap = (
@@ -96,12 +95,10 @@ class LammpsEngine:
 
     def set_fluid(self, sampled: Floats) -> None:
         """Set the water at every grain for the next steps, and count its impulse anew."""
-        scene = self._scene
-        if scene is None or scene.water.profile != Profile.COLUMN:
-            raise ValueError("the scene has no column of water: water.profile is not COLUMN")
-        if sampled.shape != (scene.n_grain, N_SAMPLED):
-            raise ValueError(f"sampled has shape {sampled.shape}, not {(scene.n_grain, N_SAMPLED)}")
-        self._all("set_fluid", np.arange(scene.n_grain), sampled)
+        assert self._scene is not None
+        n, column = self._scene.n_grain, self._scene.water.profile == Profile.COLUMN
+        check_sampled(sampled, (n, N_SAMPLED) if column else None)
+        self._all("set_fluid", np.arange(n), sampled)
 
     def couple(self, begin: Any, told: bool) -> Any:
         """Begin a column of water in every process (engine.protocol.SharesColumn)."""

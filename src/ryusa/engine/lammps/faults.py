@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge, RunError, RyusaError
 from ryusa.model import Scene
@@ -83,7 +81,7 @@ def fault_of_grains(scene: Scene, found: Any, step: int, t: float, since: int) -
             hint=f"Use stiffer contacts ({key}), or raise domain.overlap_limit if this is meant. {ago}",
             **where,
         )  # fmt: skip
-    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+    smallest = scene.d_min
     if found.speed * scene.dt > LARGEST_DISPLACEMENT * smallest:
         return ListUnsafe(
             f"a grain moves {found.speed * scene.dt / smallest:.2g} diameters in one step "

@@ -1,6 +1,7 @@
 """Records of contacts: opened at first touch, kept while touching, closed at parting."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -184,13 +185,9 @@ def closed_records(state: State, places: np.ndarray) -> np.ndarray:
     return rows
 
 
-def sorted_events(rows: Floats) -> np.ndarray:
-    """Records of ended contacts as a structured array in order of parting.
-
-    Parameters
-    ----------
-    rows : shape (n, N_EVENT), contiguous; its memory becomes that of the result.
-    """
+def sorted_events(drained: Sequence[Floats]) -> np.ndarray:
+    """Records of ended contacts, arrays of shape (n, N_EVENT), as a structured array in order of parting."""
+    rows = np.concatenate([np.zeros((0, N_EVENT)), *drained])
     ids = rows[:, : R.T_BEGIN].astype(np.int64)
     rows.view(np.int64)[:, : R.T_BEGIN] = ids
     return in_order_of_parting(rows.view(EVENT).reshape(-1))

@@ -7,48 +7,13 @@ from ryusa.laws.hertz import effective_modulus, mindlin_ratio
 from ryusa.model import Scene
 from ryusa.model.scene import Damping, Floats
 
-DT = 0
-K_N = 1
-K_S = 2
-MU = 3
-COHESION = 4
-ROLLING = 5
-ROLLING_STIFFNESS = 6
-ROLLING_ZETA = 7
-OVERLAP_LIMIT = 8
-DISPLACEMENT_LIMIT = 9  # largest displacement of a grain in one step [m]
-PERIOD_X = 10
-PERIOD_Y = 11
-G_X = 12
-G_Y = 13
-G_Z = 14
-U_STAR = 15
-K_ROUGH = 16
-Z_ZERO = 17
-U_UNIFORM = 18
-DEPTH = 19
-NU = 20
-RHO_W = 21
-C_D = 22
-A_2 = 23
-SKIN = 24
-T_ZERO = 25  # time of step 0 [s]
-ZETA_N = 26
-ZETA_S = 27
-ETA_N = 28  # constants, 0 where they follow from restitution
-ETA_S = 29
-HINDRANCE = 30  # exponent
-C_L = 31
-FILM_REACH = 32  # gap below which a film resists before touch [m]
-ASPERITY = 33
-ST_C = 34
-E_DRY = 35  # restitution of the case, in air [-]
-E_LEAST = 36
-E_EFFECTIVE = 37  # of elastic spheres [Pa]; else 0
-MINDLIN = 38  # their tangential stiffness over K sqrt(overlap) [-]
-TWISTING = 39  # largest torque about the normal over f_n R* [-]
-ADHESION = 40  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
-N_PARAMETER = ADHESION + 1
+# What each is stands where `parameters_of` sets it.
+(
+    DT, K_N, K_S, MU, COHESION, ROLLING, ROLLING_STIFFNESS, ROLLING_ZETA, OVERLAP_LIMIT,
+    DISPLACEMENT_LIMIT, PERIOD_X, PERIOD_Y, G_X, G_Y, G_Z, U_STAR, K_ROUGH, Z_ZERO, U_UNIFORM, DEPTH,
+    NU, RHO_W, C_D, A_2, SKIN, T_ZERO, ZETA_N, ZETA_S, ETA_N, ETA_S, HINDRANCE, C_L, FILM_REACH,
+    ASPERITY, ST_C, E_DRY, E_LEAST, E_EFFECTIVE, MINDLIN, TWISTING, ADHESION, N_PARAMETER,
+) = range(42)  # fmt: skip
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
@@ -69,8 +34,8 @@ def parameters_of(scene: Scene) -> Floats:
         ROLLING_STIFFNESS: rolling.stiffness_factor,
         ROLLING_ZETA: rolling.zeta_r,
         OVERLAP_LIMIT: scene.overlap_limit,
-        DISPLACEMENT_LIMIT: LARGEST_DISPLACEMENT
-        * float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf)),
+        # largest displacement of a grain in one step [m]
+        DISPLACEMENT_LIMIT: LARGEST_DISPLACEMENT * scene.d_min,
         PERIOD_X: scene.period[0],
         PERIOD_Y: scene.period[1],
         G_X: scene.gravity[0],
@@ -86,22 +51,22 @@ def parameters_of(scene: Scene) -> Floats:
         C_D: water.c_d,
         A_2: water.a_2,
         SKIN: 0.0,
-        T_ZERO: 0.0,
+        T_ZERO: 0.0,  # time of step 0 [s]
         ZETA_N: law.zeta_n if asked else 0.0,
         ZETA_S: law.zeta_s if asked else 0.0,
-        ETA_N: 0.0 if asked else law.eta_n,
+        ETA_N: 0.0 if asked else law.eta_n,  # constants, 0 where they follow from restitution
         ETA_S: 0.0 if asked else law.eta_s,
         HINDRANCE: water.hindrance_exponent,
         C_L: water.c_l,
-        FILM_REACH: water.film_reach,
+        FILM_REACH: water.film_reach,  # gap below which a film resists before touch [m]
         ASPERITY: water.asperity,
         ST_C: water.st_c,
-        E_DRY: law.e_n,
+        E_DRY: law.e_n,  # restitution of the case, in air [-]
         E_LEAST: water.e_least,
-        E_EFFECTIVE: 0.0,
-        MINDLIN: 0.0,
-        TWISTING: rolling.twisting,
-        ADHESION: law.adhesion_amount,
+        E_EFFECTIVE: 0.0,  # of elastic spheres [Pa]; else 0
+        MINDLIN: 0.0,  # their tangential stiffness over K sqrt(overlap) [-]
+        TWISTING: rolling.twisting,  # largest torque about the normal over f_n R* [-]
+        ADHESION: law.adhesion_amount,  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
     }
     if law.force == ContactForce.HERTZ_MINDLIN:
         table[E_EFFECTIVE] = effective_modulus(law.youngs_modulus, law.poisson_ratio)

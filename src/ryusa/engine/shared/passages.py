@@ -70,7 +70,7 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
     events : records of the contacts that end with it, dtype EVENT; values at parting are nan.
     """
     if not len(ids):
-        return state, sorted_events(np.zeros((0, N_EVENT)))
+        return state, sorted_events(())
     ids = scene.spheres_of(ids)
     leaves = np.zeros(scene.n_grain, dtype=np.bool_)
     leaves[ids] = True
@@ -93,7 +93,7 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
         state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, engine=None,
         present=everywhere(state) & ~leaves, bodies=bodies,
     )  # fmt: skip
-    return state, sorted_events(rows)
+    return state, sorted_events([rows])
 
 
 def placed(scene: Scene, state: State, grains: Entering) -> State:

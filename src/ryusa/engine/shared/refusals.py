@@ -9,7 +9,7 @@ from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
 from ryusa.laws.families import Adhesion, ContactForce, ContactTiming, Fluctuations, Profile, Rebound
 from ryusa.model import RigidBodies, Scene, State, Walls
-from ryusa.model.scene import ALIKE, Damping
+from ryusa.model.scene import ALIKE, Damping, Floats
 from ryusa.model.walls import SPIN, largest_speed
 
 _OFF = 1.0e-6  # of a diameter, or of a unit quaternion: more is no round-off
@@ -60,7 +60,7 @@ def _walls(scene: Scene, walls: Walls) -> list[str]:
         for w in np.flatnonzero(walls.active & np.any(across != 0.0, axis=1)):
             if np.isfinite(scene.period[k]):
                 reasons.append(f"wall '{walls.names[w]}' turns across the periodic direction {axis}")
-    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+    smallest = scene.d_min
     step, speed = LARGEST_DISPLACEMENT * smallest, largest_speed(walls)
     if speed * scene.dt > step:
         way = speed * scene.dt / smallest
@@ -144,6 +144,19 @@ def _refused_of_clumps(scene: Scene) -> list[str]:
     return found
 
 
+def check_sampled(sampled: Floats, shape: tuple[int, ...] | None) -> None:
+    """Refuse water at the grains of another shape than theirs; None: of a scene without a column of water.
+
+    Raises
+    ------
+    ValueError : what is wrong.
+    """
+    if shape is None:
+        raise ValueError("the scene has no column of water: water.profile is not COLUMN")
+    if sampled.shape != shape:
+        raise ValueError(f"sampled has shape {sampled.shape}, not {shape}")
+
+
 def check_state(scene: Scene, state: State) -> None:
     """Refuse a state of another scene, one that is not finite, and lanes of a plane scene that overlap.
 
@@ -194,7 +207,7 @@ def _check_bodies(scene: Scene, bodies: RigidBodies, state: State) -> None:
 def _check_lanes(scene: Scene, state: State) -> None:
     """In a plane scene another y is another lane; lanes closer than a diameter would hide contacts."""
     lanes = np.unique(np.concatenate([state.x[:, 1], scene.x_fixed[:, 1]]))
-    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    largest = scene.d_max
     apart = np.diff(lanes)
     if len(apart) and apart.min() < largest * (1.0 - 1e-9):
         y = lanes[int(apart.argmin())]

@@ -113,9 +113,9 @@ class LawChoice(NamedTuple):
     lift: int
     magnus: int
     rebound: int
-    unloading: int = 0
-    drag_of_form: int = 0  # of rigid bodies
-    adhesion: int = 0
+    unloading: int
+    drag_of_form: int  # of rigid bodies
+    adhesion: int
 
 
 def resists_spin(scene: Scene) -> bool:
@@ -145,26 +145,16 @@ def variant_of(scene: Scene) -> KernelVariant:
 def choice_of(scene: Scene) -> LawChoice:
     """The laws this scene names."""
     law, rolling, water = scene.contact, scene.rolling, scene.water
-    return LawChoice(
-        slip=int(law.slip),
-        cap=int(law.cap),
-        tension=int(law.tension),
-        rolling=int(rolling.model),
-        arm=int(rolling.arm),
-        events=int(scene.events),
-        profile=int(water.profile),
-        above=int(water.above),
-        drag=int(water.drag),
-        torque=int(water.torque),
-        buoyancy=int(water.buoyancy),
-        hindrance=int(water.hindrance),
-        lift=int(water.lift),
-        magnus=int(water.magnus),
-        rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
-        unloading=int(law.unloading),
-        drag_of_form=int(water.drag_of_form),
-        adhesion=int(law.adhesion),
-    )
+    own = {
+        "rolling": rolling.model,
+        "arm": rolling.arm,
+        "events": scene.events,
+        "rebound": water.rebound if water.profile != Profile.NONE else 0,
+    }
+    for name in LawChoice._fields:  # others have the name that they have in the scene
+        if name not in own:
+            own[name] = getattr(law if hasattr(law, name) else water, name)
+    return LawChoice(**{name: int(one) for name, one in own.items()})
 
 
 def forces_kind(variant: KernelVariant, choice: LawChoice) -> ForcesKind:
