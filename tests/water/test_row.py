@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ryusa.errors import WaterError
-from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, SurfaceRule
+from ryusa.laws.families import BedKind, Drive, Mixing, Pressure, SideWalls, SurfaceRule
 from ryusa.model.column import Column, Top, WaterState
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.water import advance, steady
@@ -171,8 +171,9 @@ def test_seepage_through_a_porous_dam_is_that_of_dupuit():
     assert discharges(row, now)[n // 2] == pytest.approx(exact, rel=0.064)
 
 
-def test_the_flow_on_a_reach_inclined_to_the_axis_is_that_along_it(river):
-    """Normal depth and speed at 10 deg, in a frame that lies level."""
+@pytest.mark.parametrize("pressure", list(Pressure))
+def test_the_flow_on_a_reach_inclined_to_the_axis_is_that_along_it(river, pressure):
+    """Normal depth and stress at 10 deg, in a frame that lies level."""
     alpha = np.radians(10.0)
     c = replace(river, surface=SurfaceRule.VOLUME, n=48, dz=5e-4, nu=1e-12)
     own = steady(replace(c, g_x=G * np.sin(alpha)))[0]
@@ -181,7 +182,7 @@ def test_the_flow_on_a_reach_inclined_to_the_axis_is_that_along_it(river):
     bottom = -np.tan(alpha) * (np.arange(20) + 0.5) * 0.05
     profile = np.append(own.u, np.full(72, own.u[-1]))
     inlet = RowEnd(EndKind.DISCHARGE, discharge=q, profile=profile, depth=0.02 / np.cos(alpha))
-    row = ColumnRow(level, 0.05, bottom, G, inlet, RowEnd(EndKind.UNIFORM))
+    row = ColumnRow(level, 0.05, bottom, G, inlet, RowEnd(EndKind.UNIFORM), pressure=pressure)
     now = row_at_rest(row, bottom + 0.022)
     now = advance_row(row, replace(now, u=np.full_like(now.u, 1.8)), 6.0)
     depth = now.surface[row.inner] * np.cos(alpha)

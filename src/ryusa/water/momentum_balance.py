@@ -280,8 +280,8 @@ def iterate(
     for iteration in range(MAX_ITERATIONS):
         if length_of_wall(p.mixing) and iteration > 0:
             stress, _ = bed_stress(p, u[0], wall, work.square[0])
-            part = 1.0 if iteration < DAMPED_AFTER else 0.5
-            u_star += part * (np.sqrt(abs(stress)) - u_star)
+            damped = 1.0 if iteration < DAMPED_AFTER else 0.5
+            u_star += damped * (np.sqrt(abs(stress)) - u_star)
             mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
         linearise(p, m, u, content, work)
         if steep != 1.0:
@@ -300,9 +300,9 @@ def iterate(
         if change <= TOLERANCE * scale or stuck:
             status = DONE
         change_before = change
-        part = 1.0 if iteration < DAMPED_AFTER or status == DONE else 0.5
+        damped = 1.0 if iteration < DAMPED_AFTER or status == DONE else 0.5
         for k in range(last + 1):
-            u[k] = work.r[k] if part == 1.0 else u[k] + part * (work.r[k] - u[k])
+            u[k] = work.r[k] if damped == 1.0 else u[k] + damped * (work.r[k] - u[k])
         out[ITERATIONS] = iteration + 1.0
         if status == DONE:
             break
