@@ -33,9 +33,9 @@ def test_a_hole_that_is_dug_has_its_depth_place_length_and_volume():
     assert found.depth[[0, -1]] == pytest.approx([0.0, DEEP], abs=0.4 * DZ)
     assert found.at[-1] == pytest.approx(2.5 * DX) and found.length[-1] == pytest.approx(4.0 * DX)
     assert found.volume[-1] == pytest.approx(DEEP * 2.0 * DX, rel=0.1)
-    assert found.head == pytest.approx(0.01) and found.tail == pytest.approx(0.02 - BED, abs=DZ)
+    assert found.head == pytest.approx(0.01, abs=2e-3) and found.tail == pytest.approx(0.02 - BED, abs=DZ)
     assert found["depth"].value == pytest.approx(0.5 * DEEP, rel=0.1)
-    end = 1e3 * (schoklitsch(0.01, 0.002, D) - float(found.tail.mean()))
+    end = 1e3 * (schoklitsch(float(found.head.mean()), 0.002, D) - float(found.tail.mean()))
     (note,) = found.averages.notes
     assert "behind dam 'weir'" in note and f"Schoklitsch 1932 expects {1e-3 * end:.3g} m" in note
 
@@ -48,6 +48,21 @@ def test_depth_counts_from_the_bed_of_the_first_frame_in_the_window():
     run.row._of["phi"][:] = layered(run.row.row, np.round(levels / DZ) * DZ, 0.0)
     still = scour(run, begin=0.0)
     assert not still.depth.any() and not still.length.any() and not still.volume.any()
+    assert np.isnan(still.at).all()
+    run.row._of["phi"][5:] = layered(run.row.row, np.round(levels / DZ) * DZ + 2.0 * DZ * (levels > 0.0), 0.0)
+    grown = scour(run, begin=0.0)
+    assert not grown.depth.any() and "0 m deep at the end, counted from t = 0 s" in grown.averages.notes[0]
+
+
+def test_the_head_is_vertical_and_taken_at_the_face_of_the_dam():
+    run = dug()
+    run.row._of["surface"][:, :5] = [0.05, 0.045, 0.04, 0.035, 0.03]
+    assert scour(run, begin=0.0).head == pytest.approx(0.035 - 0.02 + 0.01 * 13.0 * DX, rel=1e-3)
+    run.row._of["phi"][:, 7] = 0.0
+    note = scour(run, begin=0.0).averages.notes[0]
+    assert "dug to the floor" not in note  # there was no bed from the start
+    run.row._of["phi"][0] = run.row._of["phi"][0, 10]
+    assert "dug to the floor" in scour(run, begin=0.0).averages.notes[0]
 
 
 def test_rows_without_a_dam_a_bed_or_time_are_refused():

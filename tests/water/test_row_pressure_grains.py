@@ -211,22 +211,21 @@ def test_a_grain_that_enters_the_water_is_not_thrown_back():
     assert still.steps == 1
 
 
-def test_turbulent_fluctuations_give_the_water_nothing_upwards():
-    """Their drag would be balanced by the normal stress of the turbulence, which W has not."""
+def test_the_drift_by_turbulence_gives_the_water_nothing_upwards():
+    """Its drag is balanced by the normal stress of the turbulence, which W leaves out; eddies bear grains."""
     made, row, start, v, _ = shaken()
     turbulent = replace(row, column=replace(row.column, fluctuations=Fluctuations.RANDOM_WALK, seed=3))
     *_, (grains, _, _, speeds, _) = advance_together(made, turbulent, start, 6, v)
     taken = np.zeros((len(v), N_IMPULSE))
     taken[:, DRAG] = 1e-3
     taken[:, 2] = 1e-3 * (grains.sampled[:, W] - speeds[:, 2]) * 1e-3  # over an interval of 1 ms
-    eddies = grains.sampled[:, W] - grains._met.w
-    assert np.abs(eddies).max() > 1e-3
+    assert np.abs(grains._met.drift).max() > 1e-3
     shape, cut = grains._arrays.shape, grains._cut
     with_grains = taken, grains.sampled, grains._met, grains._grains, cut, 1e3
     given = amounts_given(shape, *with_grains)[:, 1]
     volume = grains._grains.solid * grains._met.submerged / cut.whole
-    by_mean = 1e-3 * (grains._met.w - speeds[:, 2]) + volume * grains._met.moves
-    assert given == pytest.approx(by_mean, abs=1e-15)
+    without = 1e-3 * (grains.sampled[:, W] - grains._met.drift - speeds[:, 2])
+    assert given == pytest.approx(without + volume * grains._met.moves, abs=1e-15)
     with_all = amounts_given(
         shape._replace(own=False), taken, grains.sampled, grains._met, grains._grains, cut, 1e3
     )

@@ -7,6 +7,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.inclined import gravity_at
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages, lines
@@ -15,6 +16,7 @@ from ryusa.model.row import RowDam
 from ryusa.spelling import nearest_word
 
 FEWEST = 3  # segments of bed that scour needs
+ROUND_OFF = 1.0e-9  # of a height of the bed [m]
 BACK = 0.25  # of a mean diameter, below which the bed counts as it was
 
 
@@ -25,12 +27,12 @@ class Scour(Averaged):
     Attributes
     ----------
     t : times of the frames [s].
-    depth : largest depth of the bed below what it was in the first frame [m].
-    at : way from the downstream face of the dam to it [m].
+    depth : largest depth of the bed below what it was in the first frame, normal to the axis, 0 or more [m].
+    at : way from the downstream face of the dam to it [m]; nan while it is less than BACK of a mean diameter.
     length : way from the face to where the bed is as it was behind the deepest place, within BACK [m].
     volume : of the scour up to there, with the pores, per width [m2].
-    head : height of the surface at the dam's upstream face over that of the tail water [m].
-    tail : depth of the tail water, at the end of the reach, over the bed of the first frame [m].
+    head : height of the surface at the dam's upstream face over that of the tail water, vertical [m].
+    tail : depth of the tail water over the last of the bed, as it was in the first frame [m].
     averages : of all over the window.
     """
 
@@ -89,17 +91,22 @@ def scour(run: Run, begin: float | None = None, end: float = math.inf, dam: str 
     way = (np.arange(behind, beyond) - behind + 0.5) * row.dx
     below = np.where(covered, bed[0] - bed, 0.0)
     deepest, length, volume = below.argmax(axis=1), *np.zeros((2, len(frames)))
+    depth, at = np.maximum(below.max(axis=1), 0.0), np.asarray(way[deepest], np.float64)
     for m, i in enumerate(deepest.tolist()):
+        if depth[m] <= BACK * run.scene.d_mean:  # a bed of single grains is as uneven
+            at[m] = math.nan
+            continue
         back = np.flatnonzero(below[m, i:] <= BACK * run.scene.d_mean)
         last = i + int(back[0]) if len(back) else len(way)
         length[m], volume[m] = last * row.dx, np.maximum(below[m, :last], 0.0).sum() * row.dx
-    surface = found.surface[frames]
-    before = max((one.end for one in row.dams if one.end <= over.first), default=0)
-    upstream = surface[:, before : max(over.first, before + 1)].max(axis=1)
-    head, tail = upstream - surface[:, beyond - 1], surface[:, beyond - 1] - bed[0, covered][-FEWEST:].mean()
+    surface, ends = found.surface[frames], np.flatnonzero(covered)[-FEWEST:]
+    before, low = max(over.first - 1, 0), surface[:, behind + ends].mean(axis=1)
+    slope = math.atan2(*gravity_at(run, float(found.t[frames[0]])))
+    apart = float(way[ends].mean()) + (behind - before - 0.5) * row.dx
+    head = (surface[:, before] - low) * math.cos(slope) + apart * math.sin(slope)
+    tail = low - bed[0, ends].mean()
     t = found.t[frames]
     window = (float(t[0]), float(t[-1]))
-    depth, at = below.max(axis=1), np.asarray(way[deepest], np.float64)
     held = (
         ("depth", depth),
         ("at", at),
@@ -110,12 +117,15 @@ def scour(run: Run, begin: float | None = None, end: float = math.inf, dam: str 
     )
     means = tuple(average(name, "m2" if name == "volume" else "m", [one], window) for name, one in held)
     q = float(found.discharge[frames][:, over.end].mean())
-    note = f"behind dam '{over.name}', {depth[-1]:.3g} m deep at the end"
+    note = f"behind dam '{over.name}', {depth[-1]:.3g} m deep at the end, counted from t = {t[0]:.4g} s"
+    if (bed[-1] <= floor + ROUND_OFF)[covered].any():
+        note += ", dug to the floor"
     if q > 0.0 and head.mean() > 0.0:
         d_90 = laid(run.scene.d, run.scene.m).diameter(0.9)
         most = schoklitsch(float(head.mean()), q, d_90) - float(tail.mean())
+        expects = f"{most:.3g} m" if most > 0.0 else "none"
         note += (
-            f"; Schoklitsch 1932 expects {most:.3g} m in the end, within a factor of 2, of q = {q:.3g} m2/s, "
+            f"; Schoklitsch 1932 expects {expects} in the end, within a factor of 2, of q = {q:.3g} m2/s, "
             f"D90 = {1e3 * d_90:.3g} mm and the mean head"
         )
     return Scour(t, depth, at, length, volume, head, tail, Averages("scour", means, (note,)))

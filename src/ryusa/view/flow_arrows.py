@@ -11,6 +11,7 @@ from ryusa.view.encode import Blob
 
 ALONG, OVER = 40, 12  # arrows at most, along the row and over the depth
 NONE, ZERO, STEPS = 0, 128, 127  # bytes: no water there; at rest; of the largest speed either way
+REST = 1.0e-9  # speed below which water is at rest, without an arrow [m/s]
 FEW = 1.0e-3  # share of the speeds that may lie above the largest shown, which then is theirs
 
 
@@ -23,7 +24,7 @@ def add_arrows(blob: Blob, found: WaterFrames, frames: NDArray[np.int64]) -> dic
         shape (n_frame, n_arrow, 2): NONE where there is no water, else ZERO for rest and STEPS more or less
         for `fastest`.
     fastest : speed of the largest arrow [m/s].
-    length : of that arrow [m], so that neighbours do not cover each other.
+    length : of that arrow [m], the distance between two along the row.
     """
     row = found.row
     n, dz = row.column.n, row.column.dz
@@ -37,8 +38,10 @@ def add_arrows(blob: Blob, found: WaterFrames, frames: NDArray[np.int64]) -> dic
     speeds = speeds[:, wet]
     size = np.hypot(speeds[..., 0], speeds[..., 1])
     known = size[np.isfinite(size)]
-    fastest = (float(np.quantile(known, 1.0 - FEW)) if len(known) else 0.0) or 1.0
+    fastest = float(np.quantile(known, 1.0 - FEW)) if len(known) else 0.0
+    if fastest < REST:
+        speeds, wet, fastest = speeds[:, :0], np.zeros_like(wet), 1.0
     steps = np.clip(np.rint(STEPS * speeds / fastest), -STEPS, STEPS) + ZERO
     blob.add("arrows", np.where(np.isfinite(speeds), steps, NONE).astype(np.uint8))
     places = np.column_stack([x[wet], z[wet]]).round(6).tolist()
-    return {"at": places, "fastest": fastest, "length": 1.6 * max(along * row.dx, up * dz)}
+    return {"at": places, "fastest": fastest, "length": along * row.dx}

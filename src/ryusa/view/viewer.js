@@ -56,7 +56,7 @@ class Viewer {
     const { data } = this, parts = [data.status];
     const shown = data.arrays.radius.shape[0];
     parts.push(shown < data.grains ? `${shown} of ${data.grains} grains, drawn by lot` : `${data.grains} grains`);
-    if (data.flow?.arrows) parts.push(`longest arrow ${data.flow.arrows.fastest.toPrecision(2)} m/s`);
+    if (data.flow?.arrows?.at.length) parts.push(`longest arrow ${data.flow.arrows.fastest.toPrecision(2)} m/s`);
     parts.push(this.frames < data.frames ? `${this.frames} of ${data.frames} frames` : `${data.frames} frames`);
     parts.push(data.folder);  // last: a long name is cut
     return parts.join(" \u00b7 ");
@@ -250,10 +250,11 @@ class Viewer {
     const { arrows } = this.arrays;
     if (!arrows) return;
     const { at, length } = this.data.flow.arrows, n = at.length, y = this.low[1], next = Math.min(k + 1, this.frames - 1), lines = [];
+    const highest = this.high[2] + 1e-3 * (this.high[2] - this.low[2]);  // as for the surface
     at.forEach(([x, z], i) => {
       const from = 2 * (k * n + i), to = 2 * (next * n + i), wet = [arrows[from] > 0, arrows[to] > 0];
       const part = wet[0] && wet[1] ? share : share < 0.5 ? 0 : 1;  // of the nearer frame where one is dry
-      if (x < this.low[0] || x > this.high[0] || !wet[part < 0.5 ? 0 : 1]) return;
+      if (x < this.low[0] || x > this.high[0] || z > highest || !wet[part < 0.5 ? 0 : 1]) return;
       const [u, w] = [0, 1].map((axis) => length * ((1 - part) * arrows[from + axis] + part * arrows[to + axis] - 128) / 127);
       if (Math.hypot(u, w) < 0.02 * length) return;
       const tip = [x + u / 2, y, z + w / 2];

@@ -399,7 +399,7 @@ def means_at_grains(
         met.u[i] = at[i, 0]
         if shape.own:
             met.push[i], met.moves[i] = at[i, PUSH], at[i, MOVES]
+            met.drift[i] = at[i, DRIFT]
         at[i, 1] += at[i, 0] * places.tilt[i]
-        met.w[i] = at[i, 1]
         at[i, 5] += met.gradient[i]
     return at

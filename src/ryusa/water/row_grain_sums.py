@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.model.fluid import DRAG, W
+from ryusa.model.fluid import DRAG
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import given_by_grains
@@ -32,7 +32,7 @@ class MetByGrains(NamedTuple):
     gradient: Floats  # pressure gradient [Pa/m]
     push: Floats  # force along x by the pressure of its own that a row may have [N/m3]
     moves: Floats  # and upwards on the added mass, by water that accelerates [N/m3]
-    w: Floats  # then: mean speed of the water upwards, without turbulent fluctuations [m/s]
+    drift: Floats  # then: drift upwards by turbulence that is not the same everywhere [m/s]
 
     @staticmethod
     def of(n_grain: int) -> "MetByGrains":
@@ -48,8 +48,8 @@ def amounts_given(
     """What each grain gives to the water, averaged over an interval, shape (n_grain, N_GIVEN).
 
     A pressure of its own pushes water and grains each by their share, so that its push is nothing given. Then
-    turbulent fluctuations give nothing upwards either: W has no normal stress of the turbulence, whose rise
-    would balance their drag, and above all that of their drift where the turbulence ends at the surface.
+    the drag of the drift upwards is not given either: it is balanced by the rise of the turbulence's normal
+    stress, which W leaves out. That of the other fluctuations is, which bear suspended grains.
     """
     amounts = np.zeros((len(met.u), N_GIVEN))
     four = given_by_grains(impulse, met.u, grains.archimedes, sampled, per_dt)
@@ -62,7 +62,7 @@ def amounts_given(
         if shape.own:
             volume = grains.solid[i] * met.submerged[i] / cut.whole[i]
             amounts[i, 0] -= volume * met.push[i]
-            amounts[i, 1] += volume * met.moves[i] - impulse[i, DRAG] * (sampled[i, W] - met.w[i])
+            amounts[i, 1] += volume * met.moves[i] - impulse[i, DRAG] * met.drift[i]
     return amounts
 
 

@@ -208,6 +208,8 @@ class GrainsInRow:
         other = GrainsInRow.begin(self.scene, self.row, x, state, self.threads)
         other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
         other.told.u_free[:] = self.told.u_free
+        if not self.row.hydrostatic:  # with what lands behind aerated sills
+            other.told.stations[:] = self.told.stations
         other.worst, other.eddies = self.worst, self.eddies
         other._sample(state)
         return other

@@ -7,7 +7,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import levels_of, peak_discharge
 from ryusa.casefile.row.schema import RowDamSection, RowSection
-from ryusa.casefile.row.values import RowPlan, crest_of, critical_depth, dam_span
+from ryusa.casefile.row.values import RowPlan, bed_over, crest_of, critical_depth, dam_span
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.errors import CaseError
 from ryusa.laws.families import Pressure
@@ -20,14 +20,15 @@ def way_of_nappe(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> flo
 
     Notes
     -----
-    The middle of the nappe leaves with the speed at a free overfall, and falls to the floor behind the dam,
-    or to a level that is given at the end of the row. Gravity along the axis is left out.
+    The middle of the nappe leaves with the speed at a free overfall, and falls to the floor or the bed behind
+    the dam, or to a level that is given at the end of the row. Gravity along the axis is left out.
     """
     g, critical = case.motion.gravity * math.cos(slope(case.motion)), critical_depth(case, q)
     _, behind = dam_span(plan, dam)
     end = None if case.row is None else case.row.downstream
     pool = min([] if end is None else levels_of(case, end), default=-math.inf)
-    fall = crest_of(plan, dam) + 0.5 * BRINK * critical - max(float(plan.bottom[behind]), pool)
+    ground = float(plan.bottom[behind] + bed_over(case, plan.x[behind : behind + 1])[0])
+    fall = crest_of(plan, dam) + 0.5 * BRINK * critical - max(ground, pool)
     return q / (BRINK * critical) * math.sqrt(2.0 * max(fall, 0.0) / g)
 
 

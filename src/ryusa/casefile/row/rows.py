@@ -93,11 +93,11 @@ def _eddies(case: Case, plan: RowPlan) -> list[ExplainRow]:
     if beside >= BESIDE:
         return []
     about = (
-        f"side by side, less than {BESIDE:g}: with water.column.fluctuations eddies of single grains drive "
+        f"less than {BESIDE:g}: with water.column.fluctuations eddies of single grains drive "
         "the water of a segment, whose shear makes stronger ones, until speeds are absurd; take a wider "
         "stream, longer segments, or fluctuations = 'none'"
     )
-    return [number("water", "grains on a segment", beside, "", about, "warning")]
+    return [number("water", "grains side by side on a segment", beside, "", about, "warning")]
 
 
 def _segments(case: Case, ends: str) -> list[ExplainRow]:
