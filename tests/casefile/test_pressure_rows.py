@@ -51,7 +51,8 @@ def test_segments_that_do_not_resolve_a_crest_are_said():
 
 
 def test_check_warns_of_segments_on_which_single_grains_drive_the_water():
-    name, narrow = "grains side by side on a segment", {"water__row__width": "9.7 mm", "feeds__0__high__1": "9.7 mm"}
+    name = "grains side by side on a segment"
+    narrow = {"water__row__width": "9.7 mm", "feeds__0__high__1": "9.7 mm"}
     value, origin = said("sabo_dam", name, **narrow)
     assert float(value) == pytest.approx(0.025 * 0.0097 / (0.25 * math.pi * 0.008**2))
     assert "eddies of single grains" in origin
