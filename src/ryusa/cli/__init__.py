@@ -15,8 +15,8 @@ from ryusa.version import described
 
 # one module per family of commands; each puts its commands on the app with `register(app)`
 _FAMILIES = (
-    "ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view", "ryusa.cli.film",
-    "ryusa.cli.report", "ryusa.cli.export",
+    "ryusa.cli.run", "ryusa.cli.upgrade", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view",
+    "ryusa.cli.film", "ryusa.cli.report", "ryusa.cli.export",
     "ryusa.cli.design", "ryusa.cli.sweep", "ryusa.cli.soften", "ryusa.cli.calibrate",
     "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.kernels", "ryusa.cli.doctor",
 )  # fmt: skip
