@@ -19,6 +19,7 @@ def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, s
     """Provenance at the start of a run, with status running."""
     return {
         "format": schema.FORMAT,
+        "read_by": schema.READ_BY,
         "status": schema.RUNNING,
         "message": "",
         "begin": now(),
