@@ -51,7 +51,7 @@ $(HAS_PYTHON):
 	    echo "On Debian and Ubuntu: sudo apt install python3-venv"; exit 1; }
 	@echo "creating $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(PIP) uv
+	@$(PIP) --upgrade pip uv  # a pip that knows --group
 	@touch $@
 
 $(HAS_RYUSA): pyproject.toml studies/pyproject.toml constraints.txt | $(HAS_PYTHON)
@@ -61,12 +61,12 @@ $(HAS_RYUSA): pyproject.toml studies/pyproject.toml constraints.txt | $(HAS_PYTH
 
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
-	$(call install,--editable '.[test]')
+	$(call install,--group test)
 	@touch $@
 
 $(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
 	@echo "installing what the documentation site needs into $(VENV)"
-	$(call install,--editable '.[docs]')
+	$(call install,--group docs)
 	@touch $@
 
 # ---------------------------------------------------------------------------------------------------------- demo
@@ -131,7 +131,7 @@ validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies ou
 	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
 
 fuzz: $(HAS_TESTS) ## 20,000 case files, 200 through the command line, then a quarter of an hour guided by coverage
-	$(call install,--editable '.[fuzz]')
+	$(call install,--group fuzz)
 	$(BIN)/python tests/faults/fuzz.py cases 20000 1
 	$(BIN)/python tests/faults/fuzz.py cli 200 1
 	$(BIN)/python tests/faults/fuzz.py guided 900

@@ -182,10 +182,10 @@ def test_constraints_are_exact_versions_without_addresses() -> None:
 def test_every_dependency_has_its_line_in_the_design_note() -> None:
     import tomllib
 
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    told = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     note = (ROOT / "design" / "0002-dependencies.md").read_text(encoding="utf-8")
-    extras = project["optional-dependencies"]
-    for need in [*project["dependencies"], *extras["test"], *extras["docs"]]:
+    groups = told["dependency-groups"]
+    for need in [*told["project"]["dependencies"], *groups["test"], *groups["docs"], *groups["fuzz"]]:
         name = re.match(r"[A-Za-z0-9_-]+", need)
         assert name is not None
         assert re.search(rf"^\| [^|]*\b{re.escape(name.group())}\b", note, flags=re.MULTILINE), need
