@@ -14,6 +14,8 @@ PAPER  := runs/paper
 CHECKED := runs/validation-quick
 DRAWN  := docs/pictures
 JOBS   ?= 2
+REVIEW := build/reviewers
+REVIEWERS := sp-repo-review validate-pyproject pyroma cffconvert check-jsonschema zizmor twine
 
 # Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
 SPREAD := -n $(JOBS) --dist worksteal
@@ -35,7 +37,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check constraints clean
+.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check packages packages-check reviewed release constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -178,6 +180,30 @@ kernels: $(HAS_RYUSA) ## compile what the packaged cases need; wheels of ryusa a
 
 kernels-check: $(HAS_RYUSA) ## first runs from these two wheels alone: nothing compiled, the same bits (minutes)
 	$(BIN)/python kernels/check.py build/kernels dist
+
+packages: $(HAS_RYUSA) ## wheels and source distributions of ryusa and its studies from a clean clone, in dist/, the same bytes twice
+	$(BIN)/python release/build.py dist
+
+packages-check: $(HAS_RYUSA) ## install dist/ on every Python at hand, with the newest and the oldest packages, and use it (half an hour)
+	$(BIN)/python release/install.py dist
+
+reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject, pyroma, cffconvert, check-jsonschema, zizmor, twine
+	@$(BIN)/uv venv --quiet --clear $(REVIEW)
+	@$(BIN)/uv pip install --quiet --python $(REVIEW)/bin/python $(REVIEWERS)
+	$(REVIEW)/bin/validate-pyproject pyproject.toml studies/pyproject.toml kernels/pyproject.toml
+	$(REVIEW)/bin/repo-review --show err .
+	$(REVIEW)/bin/pyroma --min 8 .  # it asks for an address of mail and one of the project
+	$(REVIEW)/bin/cffconvert --validate
+	$(REVIEW)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(REVIEW)/bin/zizmor --offline --quiet .github
+	$(REVIEW)/bin/twine check --strict dist/ryusa*
+
+release: ## everything that a release needs, from a clean clone in build/release; says what is left to a person (three hours)
+	rm -rf build/release
+	git clone --quiet --no-local . build/release
+	$(MAKE) -C build/release test-all site kernels kernels-check
+	$(MAKE) -C build/release packages packages-check reviewed
+	@cat release/left.md
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt

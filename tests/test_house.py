@@ -191,21 +191,6 @@ def test_every_dependency_has_its_line_in_the_design_note() -> None:
         assert re.search(rf"^\| [^|]*\b{re.escape(name.group())}\b", note, flags=re.MULTILINE), need
 
 
-def test_the_version_is_the_same_everywhere() -> None:
-    import tomllib
-
-    import ryusa
-
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    version = project["version"]
-    assert ryusa.__version__ == version
-    for name in ("kernels", "studies"):
-        assert project["optional-dependencies"][name] == [f"ryusa-{name}=={version}"]
-    studies = tomllib.loads((ROOT / "studies" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert (studies["version"], studies["dependencies"]) == (version, [f"ryusa=={version}"])
-    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-
-
 def test_no_folder_with_tests_is_passed_over(pytestconfig: pytest.Config) -> None:
     # pytest looks into no folder called "build" unless told so: tests/build was once never run
     passed_over = pytestconfig.getini("norecursedirs")
