@@ -1,8 +1,10 @@
-"""What files tell about the package, and the release's tools about its files, is the same everywhere."""
+"""What files tell about the package is the same everywhere, and the tools of a release do what they say."""
 
 import importlib.util
+import io
 import json
 import re
+import tarfile
 import tomllib
 from pathlib import Path
 from types import ModuleType
@@ -18,13 +20,17 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT: dict[str, Any] = PYPROJECT["project"]
 
 
-@pytest.fixture(scope="module")
-def metadata() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("metadata", ROOT / "release" / "metadata.py")
+def tool(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, ROOT / "release" / f"{name}.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def metadata() -> ModuleType:
+    return tool("metadata")
 
 
 def loaded(name: str) -> Any:
@@ -105,3 +111,32 @@ def test_containers_take_wheels_that_the_build_makes() -> None:
         assert minor is not None
         assert f"Programming Language :: Python :: {minor[1]}" in PROJECT["classifiers"]
         assert {"ryusa-*.whl", "ryusa_studies-*.whl"} <= set(re.findall(r"ryusa[\w-]*\*\.whl", text))
+
+
+def test_a_source_distribution_shows_nothing_of_the_machine(tmp_path: Path) -> None:
+    written: list[bytes] = []
+    for order, owner, at in ((("a", "b"), "one", 1.0), (("b", "a"), "other", 2.0)):
+        file = tmp_path / f"{owner}.tar.gz"
+        with tarfile.open(file, "w:gz") as archive:
+            for name in order:
+                member = tarfile.TarInfo(f"x/{name}")
+                member.size, member.mtime, member.uname, member.mode = 1, at, owner, int(at)
+                archive.addfile(member, io.BytesIO(name.encode()))
+        tool("build").plain(file, 315532800)
+        written.append(file.read_bytes())
+        with tarfile.open(file) as archive:
+            assert [one.name for one in archive] == ["x/a", "x/b"]
+    assert written[0] == written[1]
+
+
+def test_each_extra_is_asked_what_it_is_for() -> None:
+    assert set(tool("install").EXTRAS) == set(PROJECT["optional-dependencies"])
+
+
+def test_the_sixty_seconds_are_commands_of_ryusa() -> None:
+    from ryusa.cli import app
+
+    found = tool("install").sixty_seconds()
+    names = {one.name or getattr(one.callback, "__name__", "") for one in app.registered_commands}
+    assert len(found) == 7
+    assert {words[0] for words in found} == {"ryusa"} and {words[1] for words in found} <= names
