@@ -135,9 +135,10 @@ class Environment:
             print(f"  ryusa[{name}]")
 
     def install(self, *words: str) -> None:
-        """Install packages, those of ryusa from DIST."""
+        """Install packages, those of ryusa from DIST and not from what uv keeps of an earlier one."""
+        fresh = [f"--refresh-package={name}" for name in ("ryusa", "ryusa-studies", "ryusa-kernels")]
         self.run(UV, "pip", "install", "--quiet", "--python", self.bin / "python", "--only-binary", ":all:",
-                 "--find-links", self.dist, *words)  # fmt: skip
+                 "--find-links", self.dist, *fresh, *words)  # fmt: skip
 
     def done(self, *words: str | Path) -> subprocess.CompletedProcess[str]:
         """Run a command in the folder."""
