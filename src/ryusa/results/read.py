@@ -70,7 +70,7 @@ class RunArrays:
         self.folder = folder
         self.provenance = read_json(folder / schema.PROVENANCE)
         if self.provenance.get("format") != schema.FORMAT:
-            raise ResultsError(f"{folder}: {_other_format(self.provenance)}")
+            raise ResultsError(f"{folder}: {other_format(self.provenance)}")
         self.case = read_json(folder / schema.CASE_JSON, missing_ok=True)
         self.summary = read_json(folder / schema.SUMMARY, missing_ok=True)
         # (step, t [s], Scene) at the start and after every change of the timeline
@@ -199,7 +199,7 @@ class RunArrays:
         )
 
 
-def _other_format(origin: dict[str, Any]) -> str:
+def other_format(origin: dict[str, Any]) -> str:
     """What a folder of another format says about who reads it."""
     told = str(origin.get("read_by"))
     who = told if re.fullmatch(r"ryusa [\w .<>=,]{1,30}", told) else "another version"
