@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 COMMIT = "commit.txt"  # in a built package, beside this file; setup.py writes it
 _GIT_PATIENCE = 5.0  # s
