@@ -52,6 +52,7 @@ WRONG = 'import ryusa\n\nryusa.run("saltation.toml", folder=3)\nryusa.load("x").
 
 def main() -> None:
     """Check DIST with each Python."""
+    sys.stdout.reconfigure(line_buffering=True)  # each line as it is found, into a file too
     dist, named = Path(sys.argv[1]).resolve(), sys.argv[2:]
     os.environ.pop("PYTHONPATH", None)
     os.environ["RYUSA_RUN_TIMES"] = "off"
