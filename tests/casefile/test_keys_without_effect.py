@@ -24,7 +24,7 @@ from ryusa.formats.vtu import read_vtu, vtu_file
 
 PACKAGED = {name: path.read_text(encoding="utf-8") for name, path in case_files().items()}
 MOST, ENOUGH = 12, 4  # values tried of a key, and of those that are taken and change nothing
-NAMED = ("title", "name")  # what pictures, tables and messages call a thing
+NAMED = ("schema", "title", "name")  # of the file itself; what pictures, tables and messages call a thing
 MATERIAL = ("material", "bed_material")  # where "grains" is what holds without the key
 QUICK = ("single", "drop", "box", "quiet", "saltation", "flat", "weir", "table", "plain")
 NEVER = {  # always refused

@@ -16,6 +16,7 @@ from ryusa import build
 from ryusa.cli import app
 from ryusa.running import folder as folder_module
 from ryusa.running import runner
+from ryusa.version import commit
 
 
 @pytest.fixture
@@ -265,8 +266,9 @@ def test_the_schema_is_json(ryusa_: Any) -> None:
     assert "grains" in json.loads(ryusa_("schema").out)["properties"]
 
 
-def test_the_version_is_that_of_the_package(ryusa_: Any) -> None:
-    assert ryusa_("--version").out.strip() == f"ryusa {ryusa.__version__}"
+def test_the_version_is_that_of_the_package_with_its_commit(ryusa_: Any) -> None:
+    known = commit() or "unknown"
+    assert ryusa_("--version").out.strip() == f"ryusa {ryusa.__version__} (commit {known})"
 
 
 def test_the_installed_program_shows_no_traceback(here: Path) -> None:

@@ -5,7 +5,7 @@
 
 Targets are `schema` (a case file), `units`, `mesh` (an OBJ or STL file), `results` (a file of a run folder
 put in the place of one) and `resume` (a checkpoint, its numbers or one of its arrays changed and signed
-again). Anything but a named error is a crash, and so is no answer in time. Needs `pip install ryusa[fuzz]`.
+again). Anything but a named error is a crash, and so is no answer in time. Needs `pip install --group fuzz`.
 """
 
 import hashlib
@@ -197,7 +197,7 @@ def stl_files() -> list[bytes]:
 def guided(folder: Path, seconds: int) -> int:
     """All targets, one after the other; the exit code."""
     if find_spec("atheris") is None:
-        print("atheris is not installed: pip install 'ryusa[fuzz]' (Linux)")
+        print("atheris is not installed: make fuzz installs it (Linux)")
         return 2
     prepare(folder)
     bad = 0

@@ -188,3 +188,14 @@ def test_frames_read_one_by_one_in_any_order_are_those_read_at_once(
             for name, every in zip(("x", "v", "image"), whole, strict=True):
                 one = getattr(frames, name)[k]
                 assert np.array_equal(one, every[k]) and not one.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("told", "who"),
+    [('"ryusa 9.x"', "ryusa 9.x"), ('"rm -rf now"', "another version"), ("[1]", "another version"),
+     ("null", "another version")],
+)  # fmt: skip
+def test_a_folder_of_another_format_says_who_reads_it(folder: Path, told: str, who: str) -> None:
+    (folder / "provenance.json").write_text(f'{{"format": 99, "read_by": {told}}}')
+    with pytest.raises(ResultsError, match=f"format 99, which {who} reads; this is ryusa .*, which reads 2"):
+        Results.open(folder)

@@ -14,8 +14,3 @@ def test_provenance_names_versions_machine_seed_and_command() -> None:
     assert found["status"] == "running"
     assert "/" not in found["command"][0]
     json.dumps(found)
-
-
-def test_the_commit_is_a_hash_or_absent() -> None:
-    found = provenance.commit()
-    assert found is None or len(found.rstrip("+")) == 40

@@ -241,7 +241,7 @@ def test_one_run_of_each_case_comes_first_and_then_the_longest():
 
 
 def test_the_estimate_lists_runs_of_other_states_of_the_code(tmp_path, monkeypatch):
-    monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
+    monkeypatch.setattr(cost_module, "commit", lambda: "c" * 40)
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 7)]
     for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
         finished(tmp_path, one, commit)
@@ -263,7 +263,7 @@ def test_a_study_counts_the_runs_of_other_states_of_the_code(fakes, tmp_path, mo
     about = next(tmp_path.glob("*/*/provenance.json"))
     changed = json.loads(about.read_text()) | {"commit": "a" * 40}
     about.write_text(json.dumps(changed))
-    monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
+    monkeypatch.setattr(cost_module, "commit", lambda: "c" * 40)
     found = carry_out(fakes, ("one",), Plan(), tmp_path)
     assert found.n_opened == 2
     assert found.others["a" * 40] == 1

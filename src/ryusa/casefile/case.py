@@ -22,10 +22,16 @@ from ryusa.casefile.water.schema import WaterSection
 from ryusa.catalogue import load
 from ryusa.notebook import html_table
 
+SCHEMA = (
+    1  # of case files; raised with the major version of ryusa, where a key changes its name or its meaning
+)
+
 
 class Case(Section):
     """A case: what one run is to compute; every value is in SI once read."""
 
+    schema_version: Annotated[Count, Field(alias="schema", ge=1, le=SCHEMA)] = SCHEMA
+    """Schema that the file is written in, the major version of ryusa; left out, it is that of the reader."""
     title: Annotated[str, Field(max_length=200)] = ""
     """What this case is about."""
     seed: Annotated[Count, Field(ge=0, lt=2**63)] = 1

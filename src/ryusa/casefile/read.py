@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ryusa.casefile.case import Case
+from ryusa.casefile.case import SCHEMA, Case
 from ryusa.casefile.checks import check
 from ryusa.casefile.faults import as_typed, faults
 from ryusa.casefile.files import toml_text
@@ -15,8 +15,10 @@ from ryusa.casefile.overrides import parsed, with_overrides
 from ryusa.casefile.toml_faults import encoding_fault, toml_fault
 from ryusa.cases import FOLDERS, case_files
 from ryusa.errors import CaseError
+from ryusa.version import __version__
 
 LARGEST_FILE = 4 << 20  # bytes; a table of many grains belongs in a CSV file
+MOST_SCHEMA = 1000  # what is above is no schema that a later version has
 
 
 def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
@@ -70,6 +72,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
         raise CaseError(source or "case", None, f"not valid TOML: {toml_fault(text, error)}") from None
     except RecursionError:
         raise CaseError(source or "case", None, "not valid TOML: nested too deeply") from None
+    _refuse_newer(data.get("schema"), source)
     data = with_overrides(data, overrides or {})
     try:
         case = Case.model_validate(data)
@@ -80,6 +83,13 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     if found:
         raise CaseError.together([as_typed(one, data) for one in found], source)
     return case
+
+
+def _refuse_newer(schema: Any, source: str | None) -> None:
+    """Say which ryusa reads a case file of a later schema, whose keys this one may take for misspellings."""
+    if isinstance(schema, int) and SCHEMA < schema < MOST_SCHEMA:
+        allowed = f"needs ryusa {schema}.0 or later; this is ryusa {__version__}, which reads schema {SCHEMA}"
+        raise CaseError("schema", schema, allowed, source=source)
 
 
 def json_schema() -> dict[str, Any]:

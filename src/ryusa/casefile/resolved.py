@@ -22,6 +22,7 @@ from ryusa.laws.families import Mixing, SurfaceRule
 def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     """Give the case as plain data in SI with what follows filled in; numbers that do not exist are None."""
     data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
+    del data["schema"]  # of the words of a file, and says nothing of what is computed
     found = derived or derive(case)
     data["grains"] |= {"diameter": found.d, "sieve_curve": points_of(case)}
     data["contact"] = resolved_contact(case)

@@ -45,7 +45,7 @@ Found = Iterator[CaseError]
 
 # What acts where water flows and no grain ever is: keys, with all below them.
 _OF_WATER = (
-    "title", "grains.diameter", "motion.slope", "motion.slope_angle", "motion.gravity", "timeline",
+    "schema", "title", "grains.diameter", "motion.slope", "motion.slope_angle", "motion.gravity", "timeline",
     "water.profile", "water.depth", "water.density", "water.viscosity", "water.temperature",
     "water.roughness", "water.buoyancy", "water.column", "water.row", "build.kind", "time.step", "stop.time",
     "record.frames", "record.settle",
@@ -251,7 +251,8 @@ def _given_keys(case: Case) -> list[str]:
             elif value is not None:
                 yield key
 
-    places = {name: k for k, name in enumerate(type(case).model_fields)}
+    fields = type(case).model_fields.items()
+    places = {field.alias or name: k for k, (name, field) in enumerate(fields)}
     return sorted(below(case, ""), key=lambda key: (places[key.partition(".")[0]], key))
 
 

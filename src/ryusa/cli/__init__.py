@@ -11,12 +11,12 @@ import typer
 from typer.core import TyperGroup
 
 from ryusa.errors import RyusaError
-from ryusa.version import __version__
+from ryusa.version import described
 
 # one module per family of commands; each puts its commands on the app with `register(app)`
 _FAMILIES = (
-    "ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view", "ryusa.cli.film",
-    "ryusa.cli.report", "ryusa.cli.export",
+    "ryusa.cli.run", "ryusa.cli.upgrade", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view",
+    "ryusa.cli.film", "ryusa.cli.report", "ryusa.cli.export",
     "ryusa.cli.design", "ryusa.cli.sweep", "ryusa.cli.soften", "ryusa.cli.calibrate",
     "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.kernels", "ryusa.cli.doctor",
 )  # fmt: skip
@@ -68,14 +68,15 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"ryusa {__version__}")
+        typer.echo(f"ryusa {described()}")
         raise typer.Exit
 
 
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Show version and commit."),
     ] = False,
 ) -> None:
     """Simulate grains of sand, gravel or debris in flowing water by the distinct element method."""

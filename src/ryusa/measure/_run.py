@@ -15,16 +15,50 @@ Above = Literal["datum", "bed crest", "mean crest"]
 class Run(Protocol):
     """A run folder, read-only."""
 
-    case: dict[str, Any]
-    frames: Any  # Frames
-    scene: Scene  # at the start of the run
+    @property
+    def case(self) -> dict[str, Any]:
+        """The case, resolved, in SI."""
+        ...
 
-    contacts: Any  # contacts that ended: structured array of dtype model.EVENT
-    passages: Any  # grains that entered and left: structured array of dtype model.PASSAGE
-    tally: Any  # dict of arrays (n_frame,): the energy account at each frame
-    wall_travel: Any  # of each wall along the direction of its servo at each frame (n_frame, n_wall) [m]
-    row: Any  # WaterFrames of a row of columns; None without
-    walls: Any  # impulses on each wall up to each frame (n_frame, n_wall, N_IMPULSE), model.walls
+    @property
+    def frames(self) -> Any:
+        """`Frames`."""
+        ...
+
+    @property
+    def scene(self) -> Scene:
+        """At the start of the run."""
+        ...
+
+    @property
+    def contacts(self) -> Any:
+        """Contacts that ended: structured array of dtype model.EVENT."""
+        ...
+
+    @property
+    def passages(self) -> Any:
+        """Grains that entered and left: structured array of dtype model.PASSAGE."""
+        ...
+
+    @property
+    def tally(self) -> Any:
+        """Dict of arrays (n_frame,): the energy account at each frame."""
+        ...
+
+    @property
+    def wall_travel(self) -> Any:
+        """Of each wall along the direction of its servo at each frame (n_frame, n_wall) [m]."""
+        ...
+
+    @property
+    def row(self) -> Any:
+        """`WaterFrames` of a row of columns; None without."""
+        ...
+
+    @property
+    def walls(self) -> Any:
+        """Impulses on each wall up to each frame (n_frame, n_wall, N_IMPULSE), model.walls."""
+        ...
 
 
 def settle_time(run: Run) -> float:

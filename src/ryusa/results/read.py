@@ -6,6 +6,7 @@ come from the write-once files in parts/, so every frame that was written is fou
 
 import json
 import os
+import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,6 +28,7 @@ from ryusa.results.lazy import Part, read_frames
 from ryusa.results.place import refuse_other
 from ryusa.results.scene_file import read_scene
 from ryusa.results.water import WaterFrames
+from ryusa.version import __version__
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
@@ -67,12 +69,8 @@ class RunArrays:
         """Use `Results.open`."""
         self.folder = folder
         self.provenance = read_json(folder / schema.PROVENANCE)
-        written = self.provenance.get("format")
-        if written != schema.FORMAT:
-            raise ResultsError(
-                f"{folder}: format {written!r}, this ryusa reads {schema.FORMAT}. Read it with the version "
-                f"named in {schema.PROVENANCE}"
-            )
+        if self.provenance.get("format") != schema.FORMAT:
+            raise ResultsError(f"{folder}: {other_format(self.provenance)}")
         self.case = read_json(folder / schema.CASE_JSON, missing_ok=True)
         self.summary = read_json(folder / schema.SUMMARY, missing_ok=True)
         # (step, t [s], Scene) at the start and after every change of the timeline
@@ -199,6 +197,16 @@ class RunArrays:
             f"Results({str(self.folder)!r}, {self.status}, {len(self.frames)} frames, "
             f"{self.scene.n_grain} free and {self.scene.n_fixed} fixed grains)"
         )
+
+
+def other_format(origin: dict[str, Any]) -> str:
+    """What a folder of another format says about who reads it."""
+    told = str(origin.get("read_by"))
+    who = told if re.fullmatch(r"ryusa [\w .<>=,]{1,30}", told) else "another version"
+    return (
+        f"format {origin.get('format')!r}, which {who} reads; this is ryusa {__version__}, which reads "
+        f"{schema.FORMAT}. {schema.PROVENANCE} names the version that wrote it"
+    )
 
 
 def read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any, get_origin
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.laws.families import Adhesion, ContactForce
@@ -27,7 +28,8 @@ _OF_BODIES = tuple(f.name for f in fields(RigidBodies) if f.name != "names")
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water}
 # Fields that scenes of earlier versions had not: left out at their default, so that digests stay.
 _LATER = {"rolling": ("twisting",), "water": ("drag_of_form",)}
-_ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
+# `NDArray` is a name of its own from numpy 2.5 on, before a short form of np.ndarray
+_ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) in (np.ndarray, NDArray))
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
 

@@ -8,7 +8,8 @@ import numpy as np
 from ryusa.model import Tally, Term
 from ryusa.model.tally import HELD
 
-FORMAT = 2  # raised when an older reader could misread a folder
+FORMAT = 2  # raised, with the major version of ryusa, when an older reader could misread a folder
+READ_BY = "ryusa 1.x"  # versions that read this format, as provenance.json tells
 FOREIGN = "another version of ryusa wrote it, or it is damaged"  # of a part with other datasets or columns
 
 CASE_TOML = "case.toml"  # the case as read, byte for byte

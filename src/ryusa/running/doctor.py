@@ -10,7 +10,7 @@ from ryusa.compiled import store, tiers
 from ryusa.compiled.shipped import shipped
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
-from ryusa.version import __version__
+from ryusa.version import described
 
 _LEAST_ROOM = 2**20  # bytes on the disk of compiled code, more than any file of it
 
@@ -22,7 +22,7 @@ def diagnosis() -> list[tuple[str, str]]:
     """Name and finding of each line; a finding that needs action begins with "no"."""
     packages = ", ".join(f"{name} {found}" for name, found in versions().items() if found)
     return [
-        ("ryusa", f"{__version__}, Python {platform.python_version()}, {platform.system()}"),
+        ("ryusa", f"{described()}, Python {platform.python_version()}, {platform.system()}"),
         ("packages", packages),
         ("processor", processor()),
         ("vectors", _vectors()),

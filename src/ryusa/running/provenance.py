@@ -2,26 +2,24 @@
 
 import os
 import platform
-import subprocess
 import sys
 from datetime import UTC, datetime
-from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from ryusa.engine import registry
 from ryusa.results import schema
-from ryusa.version import __version__
+from ryusa.version import __version__, commit, git
 
 _PACKAGES = ("numpy", "numba", "llvmlite", "h5py", "pydantic", "pint", "scipy")
-_GIT_PATIENCE = 5.0  # s
 
 
 def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, str]) -> dict[str, Any]:
     """Provenance at the start of a run, with status running."""
     return {
         "format": schema.FORMAT,
+        "read_by": schema.READ_BY,
         "status": schema.RUNNING,
         "message": "",
         "begin": now(),
@@ -57,24 +55,12 @@ def now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-@cache
-def commit() -> str | None:
-    """Git commit of the checkout that contains this package, with "+" if files differ; None otherwise."""
-    here = Path(__file__).resolve().parent
-    top = _git(here, "rev-parse", "--show-toplevel")
-    if top is None or not (Path(top) / "src" / "ryusa").is_dir():
-        return None
-    found = _git(here, "rev-parse", "HEAD")
-    changed = _git(here, "status", "--porcelain", "--untracked-files=no", "--", str(here.parent))
-    return None if found is None else found + ("+" if changed else "")
-
-
 def last_commit(path: Path) -> str | None:
     """Git commit that last changed a file, with "+" if the file differs from it; None outside a checkout."""
-    found = _git(path.parent, "log", "-n", "1", "--format=%H", "--", str(path))
+    found = git(path.parent, "log", "-n", "1", "--format=%H", "--", str(path))
     if not found:
         return None
-    return found + ("+" if _git(path.parent, "status", "--porcelain", "--", str(path)) else "")
+    return found + ("+" if git(path.parent, "status", "--porcelain", "--", str(path)) else "")
 
 
 def processor() -> str:
@@ -98,17 +84,3 @@ def _version(package: str) -> str | None:
         return version(package)
     except PackageNotFoundError:
         return None
-
-
-def _git(folder: Path, *words: str) -> str | None:
-    try:
-        done = subprocess.run(
-            ["git", "-C", str(folder), *words],
-            capture_output=True,
-            text=True,
-            timeout=_GIT_PATIENCE,
-            check=False,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout.strip() if done.returncode == 0 else None

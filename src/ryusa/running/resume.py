@@ -14,7 +14,7 @@ from ryusa.model import Scene, State
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
-from ryusa.results.read import numbered, read_json, read_part, read_scenes
+from ryusa.results.read import numbered, other_format, read_json, read_part, read_scenes
 from ryusa.results.scene_file import scene_digest
 from ryusa.running.buffered_frames import buffered_frames
 from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint
@@ -87,9 +87,7 @@ def find_resume_point(
         return None
     before = read_json(folder / schema.PROVENANCE)
     if before.get("format") != schema.FORMAT:
-        raise CheckpointError(
-            f"{folder}: written in format {before.get('format')!r}, but this ryusa writes {schema.FORMAT}"
-        )
+        raise CheckpointError(f"{folder}: {other_format(before)}")
     was = read_json(folder / schema.CASE_JSON, missing_ok=True)
     if not was or not numbered(folder, schema.SCENE_NAME):
         return None  # killed at its start

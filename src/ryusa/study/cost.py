@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import CaseError
-from ryusa.running import provenance
 from ryusa.running.folder import format_bytes, free_bytes, nearest_existing
 from ryusa.study.task import CaseRun, Task
-from ryusa.version import __version__
+from ryusa.version import __version__, commit
 
 LATE = 3.0  # time limit of a job over the time estimated
 SHORTEST = 30  # time limit of a job at least [min]
@@ -85,7 +84,7 @@ def code_of(origin: Mapping[str, Any]) -> str:
 
 def present() -> str:
     """State of the code that is running."""
-    return code_of({"commit": provenance.commit(), "ryusa": __version__})
+    return code_of({"commit": commit(), "ryusa": __version__})
 
 
 def is_other(code: str, opened: bool) -> bool:

@@ -12,7 +12,6 @@ from ryusa.errors import RyusaError
 from ryusa.figures.comparison import compared
 from ryusa.figures.style import save_both
 from ryusa.measure import write_csv
-from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 from ryusa.study.entry import LedgerEntry, plain_entry
 from ryusa.study.executors import Processes, RunExecutor
@@ -26,6 +25,7 @@ from ryusa.study.runs import TaskResults, carry_out
 from ryusa.study.study import Study
 from ryusa.study.task import Task
 from ryusa.study.verdicts import against
+from ryusa.version import commit
 
 FORMAT = 3  # of the JSON file
 
@@ -124,7 +124,7 @@ def make(
     """
     chosen = study.parts if names is None else tuple(dict.fromkeys(names))
     refuse_if_not_writable(folder)
-    provenance.commit()  # read now: later changes of the files are not part of the running code
+    commit()  # read now: later changes of the files are not part of the running code
     faults: dict[str, Fault] = {}
     where = where or Processes(1)
     tables: dict[str, list[dict[str, object]]] = {}

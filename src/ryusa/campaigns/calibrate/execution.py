@@ -26,10 +26,10 @@ from ryusa.campaigns.sweep.part import SweepRun
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
 from ryusa.results.presentation import needed
-from ryusa.running import provenance
 from ryusa.running.folder import write_json
 from ryusa.study.executors import RunExecutor
 from ryusa.study.progress import StudyProgress
+from ryusa.version import commit
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -178,7 +178,7 @@ def carry_out_calibration(
     first = filling_points(len(asked.priors), asked.points, asked.design_seed)
     seeds = tuple(range(1, asked.seeds + 1))
     runs.plans(first, seeds)  # every point of every case is checked before anything is written or run
-    provenance.commit()  # read now: later changes of the files are not part of the running code
+    commit()  # read now: later changes of the files are not part of the running code
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / PLAN, _plain(asked))
     runs.make(first[:1], seeds[:1])  # one run shows whether the quantities are there and in which unit

@@ -16,13 +16,13 @@ from ryusa.measure import write_csv
 from ryusa.notebook import html_table
 from ryusa.results import Results
 from ryusa.results.presentation import needed
-from ryusa.running import provenance
 from ryusa.study.cost import estimate_cost, refuse_if_too_big
 from ryusa.study.executors import RunExecutor
 from ryusa.study.fault import Fault, noted
 from ryusa.study.origin import counted, traces_of
 from ryusa.study.progress import StudyProgress
 from ryusa.study.runs import carry_out
+from ryusa.version import commit
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -146,7 +146,7 @@ def carry_out_sweep(
     refuse_folder(plan, folder, again=again)
     ahead = estimate_cost(plan.runs, folder / RUNS, jobs=where.jobs, again=again)
     refuse_if_too_big(ahead, folder)  # before anything is written
-    provenance.commit()  # read now: later changes of the files are not part of the running code
+    commit()  # read now: later changes of the files are not part of the running code
     keep_plan(plan, folder)
     results = carry_out(
         {PART: plan.runs}, {PART: plan.part}.__getitem__, folder / RUNS,
