@@ -263,10 +263,10 @@ MEASURES = (
                  "front of the grains that came in or have moved: place and speed",
                  WINDOW, settled=True, builders=("stream",), fed=True, clumps=True,
                  numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
-    MeasureEntry("scour", "ryusa.measure.scour:scour",
-                 "scour below a dam in a row of columns: depth, place, length, volume, head, tail water",
-                 ("dam", *WINDOW), settled=True, fed=True, clumps=True,
-                 numbers=(("depth", "m"), ("volume", "m2")), needs=("row", "structures", "open")),
+    MeasureEntry("scour", "ryusa.measure.scour:scour", "scour below a dam in a row of columns over time",
+                 ("dam", *WINDOW), settled=True, fed=True, clumps=True, needs=("row", "structures", "open"),
+                 numbers=(("depth", "m"), ("at", "m"), ("length", "m"), ("volume", "m2"), ("head", "m"),
+                          ("tail", "m"))),
 )  # fmt: skip
 
 

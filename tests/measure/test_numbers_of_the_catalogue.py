@@ -5,6 +5,7 @@ from tests.measure.test_deposit import trapping
 from tests.measure.test_direct_shear import sheared as drawn_apart
 from tests.measure.test_mill import turning
 from tests.measure.test_plane_shear import sheared
+from tests.measure.test_scour import dug
 from tests.measure.test_shear_zone import turned
 
 from ryusa.campaigns.calibrate.study_file import _refuse_quantity
@@ -15,6 +16,7 @@ RUNS = {
     "front": lambda _: trapping(),
     "direct_shear": lambda _: drawn_apart(),
     "mill": turning,
+    "scour": lambda _: dug(),
     "shear": sheared,
     "shear_zone": turned,
 }
