@@ -124,7 +124,8 @@ class Stage:
 
     def changelog(self) -> None:
         """Add the fragments of the next release to the changelog."""
-        text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+        page = ROOT / "CHANGELOG.md"
+        text = self.relinked(page.read_text(encoding="utf-8"), page, "changelog.md")
         lines = [text.rstrip(), ""]
         for word in ("added", "changed", "fixed", "removed"):
             fragments = sorted((ROOT / "changelog").glob(f"*.{word}.md"))
@@ -132,7 +133,7 @@ class Stage:
                 lines += [f"### {word.capitalize()}", ""]
                 for one in fragments:
                     said = " ".join(one.read_text(encoding="utf-8").split()).removeprefix("- ")
-                    lines.append(f"- {self.relinked(said, ROOT / 'CHANGELOG.md', 'changelog.md')}")
+                    lines.append(f"- {self.relinked(said, page, 'changelog.md')}")
                 lines.append("")
         self.write("changelog.md", "\n".join(lines))
 
