@@ -167,6 +167,7 @@ class GrainsInRow:
     def meet(self, state: RowState) -> None:
         """Tell the grains of water of a given state, in which nothing has moved yet."""
         shape = self.told.phi.shape
+        state = open_state(self.row, state)
         self._tell(state, np.zeros((N_ROW_SUM, *shape)), np.zeros_like(self.told.u), 0.0)
         self._sample(state)
 
@@ -180,7 +181,7 @@ class GrainsInRow:
         told = grains.told
         for into, one in ((told.w, found.w), (told.force_z, found.force_z), (told.u_free, found.u)):
             into[:] = open_values(row, one)
-        grains._sample(state)  # which notes what each grain met, for what it gives
+        grains._sample(open_state(row, state))  # which notes what each grain met, for what it gives
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
 
@@ -211,7 +212,7 @@ class GrainsInRow:
         if not self.row.hydrostatic:  # with what lands behind aerated sills
             other.told.stations[:] = self.told.stations
         other.worst, other.eddies = self.worst, self.eddies
-        other._sample(state)
+        other._sample(open_state(self.row, state))
         return other
 
     def _concentrate(self) -> None:
@@ -343,10 +344,10 @@ class GrainsInRow:
         self.fastest = max(water, float(rates.max()), self.fastest_grain)
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, row.column.seed, dt, self.sampled[:, SHEAR])
-        self._tell(state, sums, through, dt)
+        self._tell(now, sums, through, dt)
         if self.fastest * self.scene.dt > STIFF:  # the next interval is a step
             meet_within_step(shape, self.scene.dt, rates, sums, told)
-        self._sample(state)
+        self._sample(now)
         return state
 
     def _at_rest(self) -> PorousSolid | None:
@@ -357,9 +358,8 @@ class GrainsInRow:
         return None if self._bed.taken or not phi.any() else PorousSolid(phi, 0.0 * phi, 0.0 * phi)
 
     def _tell(self, state: RowState, sums: Floats, through: Floats, dt: float) -> None:
-        """Note what the grains meet in the next interval."""
-        state, told, arrays = open_state(self.row, state), self.told, self._arrays
-        water = _water_of(state)
+        """Note what the grains meet in the next interval, in water of a state of the opened row."""
+        told, arrays, water = self.told, self._arrays, _water_of(state)
         told.stations[:] = state.profiles
         hang(arrays.p, arrays.shape, water, False, arrays.nappe, np.zeros(N_ROW_TERM))
         inner = arrays.shape.inner[0]
@@ -370,8 +370,7 @@ class GrainsInRow:
         )  # fmt: skip
 
     def _sample(self, state: RowState) -> None:
-        """Write the water at every grain."""
-        state = open_state(self.row, state)
+        """Write the water at every grain, of a state of the opened row."""
         p, shape, told, laws = self._arrays.p, self._arrays.shape, self.told, self._laws
         turbulence = np.zeros((0, *told.u.shape))
         if self.eddies is not None:
