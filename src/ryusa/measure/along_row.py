@@ -12,8 +12,10 @@ from ryusa.laws.slices import sphere_slice
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.slices_in_layers import CHUNK
 from ryusa.model import ColumnRow
+from ryusa.model.row import RowDam
 from ryusa.printed import ByShape
 from ryusa.results.water import WaterFrames
+from ryusa.spelling import nearest_word
 
 Ints = NDArray[np.int64]
 SLOW = 0.1  # speed below which a grain rests, over sqrt(g d), as in `measure.entrainment`
@@ -295,3 +297,19 @@ def _cut(
             for c in range(at.shape[1]):
                 taken = at[i, c] if k >= shut[i, c] else at[i, 1]
                 sums[taken, k] += weight[i, c] * part
+
+
+def dam_named(row: ColumnRow, name: str | None) -> RowDam | None:
+    """The dam of that name, without a name the one farthest upstream; None in a row without dams.
+
+    Raises
+    ------
+    ResultsError : the row has no dam of that name.
+    """
+    dams = sorted(row.dams, key=lambda one: one.first)
+    names = [one.name for one in dams]
+    if name is not None and name not in names:
+        there = f"the row has {', '.join(names)}" if names else "the row has none"
+        near = nearest_word(name, tuple(names))
+        raise ResultsError(f"no dam {name!r}: {there}" + (f". Did you mean {near!r}?" if near else ""))
+    return dams[0 if name is None else names.index(name)] if dams else None

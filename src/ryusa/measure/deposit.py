@@ -9,14 +9,14 @@ import numpy as np
 from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
-from ryusa.measure.along_row import volumes_of_heads
+from ryusa.measure.along_row import dam_named, volumes_of_heads
 from ryusa.measure.long_section import Bed, bed_line, row_of
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import Average, average, ratio, standard_error
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import ColumnRow
 from ryusa.model.feeds import IN, OUT
-from ryusa.spelling import known_word, nearest_word
+from ryusa.spelling import known_word
 
 FEWEST = 3  # segments with a deposit to which a line is fitted
 ROUND_OFF = 1.0e-9  # of the grains in a reach, which are added up; less than that is no grain
@@ -183,15 +183,9 @@ def _reach(row: ColumnRow, dam: str | None, reach: tuple[float, float] | None) -
                 f"{last:g} m"
             )
         return (*reach, reach[1])
-    dams = sorted(row.dams, key=lambda one: one.first)
-    names = [one.name for one in dams]
-    if dam is not None and dam not in names:
-        there = f"the row has {', '.join(names)}" if names else "the row has none"
-        near = nearest_word(dam, tuple(names))
-        raise ResultsError(f"no dam {dam!r}: {there}" + (f". Did you mean {near!r}?" if near else ""))
-    if not names:
+    chosen = dam_named(row, dam)
+    if chosen is None:
         return first, last, last
-    chosen = dams[names.index(dam) if dam is not None else 0]
     return first, first + chosen.end * row.dx, first + chosen.first * row.dx
 
 

@@ -7,13 +7,12 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.along_row import dam_named
 from ryusa.measure.inclined import gravity_at
 from ryusa.measure.long_section import bed_line, row_of
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model.grading import laid
-from ryusa.model.row import RowDam
-from ryusa.spelling import nearest_word
 
 FEWEST = 3  # segments of bed that scour needs
 ROUND_OFF = 1.0e-9  # of a height of the bed [m]
@@ -75,9 +74,11 @@ def scour(run: Run, begin: float | None = None, end: float = math.inf, dam: str 
     """
     found = row_of(run)
     row = found.row
-    if not run.scene.n_grain or not row.dams:
+    over = dam_named(row, dam)
+    if over is None or not run.scene.n_grain:
         raise ResultsError("needs grains in a row of columns with a dam (water.row.dams)")
-    over, behind, beyond = _reach(row.dams, dam, row.n_segment)
+    behind = over.end
+    beyond = min((one.first for one in row.dams if one.first >= behind), default=row.n_segment)
     first = settle_time(run) if begin is None else begin
     frames = np.flatnonzero((found.t >= first) & (found.t <= end))
     if len(frames) < 2:
@@ -129,17 +130,6 @@ def scour(run: Run, begin: float | None = None, end: float = math.inf, dam: str 
             f"D90 = {1e3 * d_90:.3g} mm and the mean head"
         )
     return Scour(t, depth, at, length, volume, head, tail, Averages("scour", means, (note,)))
-
-
-def _reach(dams: tuple[RowDam, ...], name: str | None, n: int) -> tuple[RowDam, int, int]:
-    """A dam by its name, the first segment behind it, and the one after the last before what follows."""
-    names = [one.name for one in dams]
-    if name is not None and name not in names:
-        near = nearest_word(name, tuple(names))
-        there = f"no dam {name!r}: the row has {', '.join(names)}"
-        raise ResultsError(there + (f". Did you mean {near!r}?" if near else ""))
-    chosen = min(dams, key=lambda one: one.first) if name is None else dams[names.index(name)]
-    return chosen, chosen.end, min((one.first for one in dams if one.first >= chosen.end), default=n)
 
 
 def schoklitsch(head: float, q: float, d_90: float) -> float:
