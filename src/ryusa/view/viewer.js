@@ -22,6 +22,7 @@ class Viewer {
 
   get frames() { return this.data.t.length; }
   get grains() { return this.arrays.radius.length; }
+  get highest() { return this.high[2] + 1e-3 * (this.high[2] - this.low[2]); }  // water far above the grains is left out, as in the box
   get aspect() { return this.canvas.width / this.canvas.height; }
 
   build() {
@@ -231,13 +232,12 @@ class Viewer {
     const { arrays, low, high, painter } = this;
     if (!arrays.line) return;
     const { x } = this.data.flow, n = x.length, next = Math.min(k + 1, this.frames - 1), faces = [], lines = [];
-    const highest = high[2] + 1e-3 * (high[2] - low[2]);  // what is far above the grains is left out, as in the box
     const z = x.map((_, i) => {
       const from = arrays.line[k * n + i], to = arrays.line[next * n + i], between = from + share * (to - from);
       return Number.isFinite(between) ? between : share < 0.5 ? from : to;
     });
     for (let i = 0; i + 1 < n; i++) {
-      if (!(Math.max(z[i], z[i + 1]) <= highest)) continue;  // nan too
+      if (!(Math.max(z[i], z[i + 1]) <= this.highest)) continue;  // nan too
       const [a, b, c, d] = [[x[i], low[1], z[i]], [x[i + 1], low[1], z[i + 1]], [x[i + 1], high[1], z[i + 1]], [x[i], high[1], z[i]]];
       faces.push(a, b, c, a, c, d);
       lines.push(a, b, c, d);
@@ -250,11 +250,10 @@ class Viewer {
     const { arrows } = this.arrays;
     if (!arrows) return;
     const { at, length } = this.data.flow.arrows, n = at.length, y = this.low[1], next = Math.min(k + 1, this.frames - 1), lines = [];
-    const highest = this.high[2] + 1e-3 * (this.high[2] - this.low[2]);  // as for the surface
     at.forEach(([x, z], i) => {
       const from = 2 * (k * n + i), to = 2 * (next * n + i), wet = [arrows[from] > 0, arrows[to] > 0];
       const part = wet[0] && wet[1] ? share : share < 0.5 ? 0 : 1;  // of the nearer frame where one is dry
-      if (x < this.low[0] || x > this.high[0] || z > highest || !wet[part < 0.5 ? 0 : 1]) return;
+      if (x < this.low[0] || x > this.high[0] || z > this.highest || !wet[part < 0.5 ? 0 : 1]) return;
       const [u, w] = [0, 1].map((axis) => length * ((1 - part) * arrows[from + axis] + part * arrows[to + axis] - 128) / 127);
       if (Math.hypot(u, w) < 0.02 * length) return;
       const tip = [x + u / 2, y, z + w / 2];
