@@ -1,6 +1,7 @@
 """Speeds and pressure of the water within a row of columns."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,9 +17,26 @@ LONGEST = 0.28  # of an arrow of the speed that all but a few do not exceed [inc
 SMALL = 1.0e-9  # speed below which water is at rest [m/s]
 
 
+class Scales(NamedTuple):
+    """What axes, arrows and colours reach."""
+
+    speed: float  # that all but a few do not exceed [m/s]
+    pressure: float  # the same, without its sign [Pa]
+    top: float  # of surface and bed over the x axis [m]
+
+
+def scales_of(moments: Sequence[FlowField]) -> Scales:
+    """Scales that cover several moments of a run, as in a film."""
+    speeds = np.concatenate([np.hypot(one.u, one.w).ravel() for one in moments])
+    pressures = [one.pressure.ravel() for one in moments if one.pressure is not None]
+    pressure = largest_but_few(np.concatenate(pressures)) if pressures else 0.0
+    top = max(float(np.maximum(one.surface, one.bed).max()) for one in moments)
+    return Scales(largest_but_few(speeds), pressure, top)
+
+
 @style.house
 def flow_field(
-    found: FlowField, among: Sequence[FlowField] = (), *, height: float = 3.0, words: str | None = None
+    found: FlowField, scales: Scales | None = None, *, height: float = 3.0, words: str | None = None
 ) -> Figure:
     """Draw arrows of the speed over colours of the pressure, or of the speed where it is hydrostatic.
 
@@ -27,23 +45,21 @@ def flow_field(
 
     Parameters
     ----------
-    among : other moments of the same run that axes and scales cover too, as in a film.
+    scales : that axes, arrows and colours have; default those of this moment.
     height : of the figure [inch].
     words : above the figure, in place of the time in it.
     """
     figure, axes = style.new(1, width=style.PAGE, height=height)
-    every = (found, *among)
-    x, own = found.x, found.pressure
+    scales = scales or scales_of([found])
+    x, own, most = found.x, found.pressure, scales.speed
     step = x[1] - x[0] if len(x) > 1 else 1.0
     edges, speed = np.append(x - 0.5 * step, x[-1] + 0.5 * step), np.hypot(found.u, found.w)
-    most = largest_but_few(np.concatenate([np.hypot(one.u, one.w).ravel() for one in every]))
     dz = found.z[0, 1] - found.z[0, 0]
     if own is None:
         values, label, low, high, colours = speed, "speed  (m/s)", 0.0, most, "Blues"
     else:
         values, label, colours = own, "pressure beyond the hydrostatic one  (Pa)", "RdBu_r"
-        pressures = [one.pressure.ravel() for one in every if one.pressure is not None]
-        high = largest_but_few(np.concatenate(pressures))
+        high = scales.pressure
         low = -high
     # corners of cells; each segment has heights of its own, so that between two lies a strip without colour
     corners = np.column_stack([found.z - 0.5 * dz, found.z[:, -1] + 0.5 * dz])
@@ -57,7 +73,7 @@ def flow_field(
     figure.colorbar(drawn, ax=axes[0], label=label, pad=0.02, extend="max" if own is None else "both")
     _lines(axes[0], found, edges)
     low = 100.0 * float(found.floor.min())
-    high = 100.0 * max(float(np.maximum(one.surface, one.bed).max()) for one in every)
+    high = 100.0 * scales.top
     axes[0].set_xlim(edges[0], edges[-1])
     axes[0].set_ylim(low - 0.03 * (high - low), high + 0.06 * (high - low))
     axes[0].set_xlabel("distance along the row  $x$  (m)")

@@ -1,6 +1,7 @@
 """The long section of a row of columns, or its flow field, as a film: the same axes in all pictures."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -41,16 +42,18 @@ def section_pictures(
     recorded = np.asarray(results.frames.t, dtype=np.float64)
     nearest = np.abs(recorded[:, None] - times).argmin(axis=0)
     dpi, shown = size[0] / style.PAGE, [int(k) for k in np.unique(nearest)]
-    drawn_by: Callable[..., Figure]
+    pictures: dict[int, Callable[..., Figure]]
     if view == FIELD:
-        drawn_by, moments = fields.flow_field, {k: flow_field(results, float(recorded[k])) for k in shown}
+        moments = {k: flow_field(results, float(recorded[k])) for k in shown}
+        scales = fields.scales_of(tuple(moments.values()))
+        pictures = {k: partial(fields.flow_field, one, scales) for k, one in moments.items()}
     else:
-        drawn_by = sections.long_section
-        moments = {k: long_section(results, float(recorded[k]), bed) for k in shown}
-    among = tuple(moments.values())
+        every = {k: long_section(results, float(recorded[k]), bed) for k in shown}
+        among = tuple(every.values())
+        pictures = {k: partial(sections.long_section, one, among) for k, one in every.items()}
 
     def draw(k: int) -> Image.Image:
-        figure = drawn_by(moments[int(nearest[k])], among, height=size[1] / dpi, words=words(float(times[k])))
+        figure = pictures[int(nearest[k])](height=size[1] / dpi, words=words(float(times[k])))
         figure.set_dpi(dpi)
         canvas = figure.canvas
         canvas.draw()
