@@ -52,11 +52,10 @@ def upgrade(text: str, *, path: Path | None = None, as_before: bool = False) -> 
     ------
     CaseError : the case cannot be read, or a line must be written by hand.
     """
-    read_text(text, path=path)
-    data = parsed(text)
+    case, data = read_text(text, path=path), parsed(text)
     if "schema" in data:
         return Upgrade(text, {}, {})
-    found = _others_before(text, data, path)
+    found = _others_before(text, data, path, resolved(case))
     lines = {"schema": str(SCHEMA)} | (found if as_before else {})
     rewritten = text
     for key, value in lines.items():
@@ -64,10 +63,9 @@ def upgrade(text: str, *, path: Path | None = None, as_before: bool = False) -> 
     return Upgrade(rewritten, lines, {} if as_before else found)
 
 
-def _others_before(text: str, data: dict[str, Any], path: Path | None) -> dict[str, str]:
-    """Keys left out that had another value before, where that changes what is computed."""
+def _others_before(text: str, data: dict[str, Any], path: Path | None, was: dict[str, Any]) -> dict[str, str]:
+    """Keys left out that had another value before, where that changes the resolved case `was`."""
     found: dict[str, str] = {}
-    was = resolved(read_text(text, path=path))
     for key, value in BEFORE.items():
         section, leaf = key.split(".")
         rivals = {one for pair in RIVALS[section] if leaf in pair for one in pair}
@@ -92,9 +90,7 @@ def _with_line(text: str, key: str, value: str) -> str:
     end = "\r\n" if "\r\n" in text else "\n"
     section, _, leaf = key.rpartition(".")
     line = f"{leaf} = {value}{end}"
-    head = (
-        rf"^[ \t]*\[[ \t]*{section}[ \t]*\][ \t]*(#.*)?$\r?\n?" if section else r"^(?:[ \t]*(?:#.*)?\r?\n)*"
-    )
+    head = rf"^[ \t]*\[[ \t]*{section}[ \t]*\][ \t]*(#.*)?$\r?\n?" if section else COMMENTS
     if place := re.search(head, text, flags=re.MULTILINE):
         before, after = text[: place.end()], text[place.end() :]
     else:
