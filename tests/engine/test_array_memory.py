@@ -28,7 +28,7 @@ def resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="Linux alone tells how much memory a process has")
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc/self/statm, which Linux alone has")
 def test_only_what_is_written_takes_memory_and_it_is_given_back():
     before = resident()
     array = unwritten(np.float64, MANY)
