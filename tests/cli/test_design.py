@@ -27,6 +27,21 @@ def test_the_paper_grain_gets_its_band_and_its_contact_times():
     assert "k_n = 6993 to 6.993e+05 N/m" in result.output
 
 
+@pytest.mark.parametrize(
+    ("more", "steps"),
+    [
+        ((), 10),
+        (("--restitution", "1"), 16),
+        (("--pull-off-force", "0.1 mN"), 50),
+        (("--steps-per-contact", "20"), 20),
+    ],
+)
+def test_the_step_is_that_of_a_case_which_gives_none(more, steps):
+    result = CliRunner().invoke(app, [*PAPER, *more])
+    assert result.exit_code == 0, result.output
+    assert f"step dt at {steps} steps per contact" in result.output
+
+
 @pytest.mark.full
 def test_charts_and_tables_are_written(tmp_path):
     result = CliRunner().invoke(app, [*PAPER, "--water", "-o", str(tmp_path / "design")])

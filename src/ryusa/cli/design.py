@@ -34,7 +34,10 @@ def design(
     pull_off_force: Annotated[
         str, typer.Option(help="Pull-off force of adhesion between two grains, such as 0.1mN.")
     ] = "0 N",
-    steps_per_contact: Annotated[float, typer.Option(help="Steps in the shortest contact.")] = 50.0,
+    steps_per_contact: Annotated[
+        float | None,
+        typer.Option(help="Steps in the shortest contact; default as a case takes them that gives none."),
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for charts (PNG, SVG) and CSV.")
     ] = None,
@@ -42,14 +45,19 @@ def design(
     """Print the stiffness that keeps overlap/d in the stable range, and draw fig4, fig8, fig11 and fig12."""
     from rich.console import Console
 
+    from ryusa.casefile.record.time import steps_of_law
     from ryusa.errors import CaseError
+    from ryusa.laws.families import ContactTiming
     from ryusa.measure.stability import choice, stable_range
 
     if not 0.0 < restitution <= 1.0:
         raise CaseError("--restitution", restitution, "must be above 0 and at most 1")
-    if not 10.0 <= steps_per_contact <= 1.0e4:
+    if steps_per_contact is not None and not 10.0 <= steps_per_contact <= 1.0e4:
         raise CaseError("--steps-per-contact", steps_per_contact, "must be at least 10 and at most 10000")
     grain = _grain(diameter, density, restitution, speed, water, pull_off_force)
+    if steps_per_contact is None:
+        timing = ContactTiming.AT_STEPS if grain.pull_off > 0.0 else ContactTiming.EXACT
+        steps_per_contact = steps_of_law(False, timing, restitution == 1.0)
     soft, stiff = stable_range(grain)
     chosen = [choice(grain, k, steps_per_contact, RATE) for k in (soft, (soft * stiff) ** 0.5, stiff)]
     console = Console(width=None if sys.stdout.isatty() else 120)
