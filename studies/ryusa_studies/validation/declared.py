@@ -31,6 +31,8 @@ from ryusa.study import Band, Finding, Interval, Known, Source, Trial, at_most, 
 FOLDER = Path(__file__).with_name("comparisons")
 Number = float | Interval | Sequence[float] | Floats  # several are one of each seed: their mean is judged
 Told = Number | Trial  # a trial stands as it is, where what is asked depends on what is measured
+Settings = Mapping[str, str]  # of a run, by the keys of its case
+NONE: Settings = {}
 Numbers = Mapping[str, Told | Mapping[Any, Told] | None]  # by name, or by name and word; None is left out
 
 

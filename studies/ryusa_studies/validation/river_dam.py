@@ -14,7 +14,7 @@ from ryusa.model.arrays import Floats
 from ryusa.results import Results
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, case_run
 from ryusa_studies.validation import river_exner as exner
-from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.declared import NONE, Settings, declared
 
 DECLARED = declared(__file__)
 DAM, EVEN = "filling_dam", "even_bed"
@@ -35,10 +35,10 @@ class Dams:
     beds: tuple[tuple[float, float], ...]  # slope [-] and depth [m] of the even beds
     differs: dict[str, str] = field(default_factory=dict[str, str])  # from filling_dam.toml
 
-    def dam(self, share: float) -> CaseRun:
-        """A run with a share of the feed."""
-        rate = {"feeds.0.rate": f"{share * FEED:g} kg/s"}
-        return case_run(case_path("validation/filling_dam.toml"), self.differs | rate, seed=1)
+    def dam(self, share: float, more: Settings = NONE) -> CaseRun:
+        """A run with a share of the feed, and settings that differ from its case."""
+        differs = {**self.differs, "feeds.0.rate": f"{share * FEED:g} kg/s", **more}
+        return case_run(case_path("validation/filling_dam.toml"), differs, seed=1)
 
     def tasks(self) -> list[CaseRun]:
         """All of its runs."""
@@ -113,16 +113,19 @@ def slope_that_carries(even: Sequence[tuple[float, float, float, float]], q: flo
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Slopes at each feed, and the volumes that follow from them."""
-    return [_judged(found, dams) for dams in ALL] if plan.level is Level.FULL else []
+    return [finding(found, dams, dams.shares) for dams in ALL] if plan.level is Level.FULL else []
 
 
-def _judged(found: Found, dams: Dams) -> Finding:
+def finding(
+    found: Found, dams: Dams, shares: Sequence[float], more: Settings = NONE, under: str = ""
+) -> Finding:
+    """Deposits of these shares of the feed; `under` says in words what settings differ from the case."""
     even = [
         (float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"]))
         for e in (found[even_bed(*one)] for one in dams.beds)
     ]
-    runs = [found[dams.dam(share)] for share in dams.shares]
-    q_s = [share * FEED / (DENSITY * WIDTH) for share in dams.shares]
+    runs = [found[dams.dam(share, more)] for share in shares]
+    q_s = [share * FEED / (DENSITY * WIDTH) for share in shares]
     expected = [slope_that_carries(even, dams.discharge, one) for one in q_s]
     slopes = [float(one["slope"]) for one in runs]
     # tan of what the bottom falls more than the deposit; P is normal to the bottom
@@ -130,10 +133,10 @@ def _judged(found: Found, dams: Dams) -> Finding:
     volumes = [0.5 * dams.high**2 / one for one in fall]
     kind = DECLARED["{name}"]
     errors = [kind.trial("missing", max(float(one["missing"]) for one in runs))]
-    for share, slope, own, one, volume in zip(dams.shares, expected, slopes, runs, volumes, strict=True):
+    for share, slope, own, one, volume in zip(shares, expected, slopes, runs, volumes, strict=True):
         errors.append(kind.trial("slope", own / slope, f"{share:.2f}"))
         errors.append(kind.trial("volume", float(one["volume"]) / volume, f"{share:.2f}"))
-    names = [f"feed {share:.2f}" for share in dams.shares]
+    names = [f"feed {share:.2f}" for share in shares]
     ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, runs, strict=True)]
     x = np.linspace(0.0, FACE, 141)
     theory = [
@@ -149,5 +152,5 @@ def _judged(found: Found, dams: Dams) -> Finding:
     feeds = ", ".join(f"{1e4 * one:.1f}" for one in q_s)
     return kind.finding(
         ours, theory, errors, name=dams.name, high=100.0 * dams.high, q=dams.discharge, feeds=feeds,
-        said=said, beds=beds,
+        said=said, beds=beds, under=under,
     )  # fmt: skip

@@ -50,17 +50,20 @@ def ritter(x: Floats, t: float, deep: float) -> Floats:
     return np.clip(2.0 * c - x / t, 0.0, 3.0 * c) ** 2 / (9.0 * G)
 
 
-def broken(seed: int) -> dict[str, Floats]:
+def broken(seed: int, pressure: str = "hydrostatic") -> dict[str, Floats]:
     """Let a bed settle, then the dam break over it; `profiles` of that.
+
+    pressure : of the row, by its name in a case.
 
     Raises
     ------
     KeyboardInterrupt : a run was stopped.
     """
     path = case_path(f"validation/{CASE}.toml")
-    case = read(path, {"seed": str(seed)})
+    differs = {"seed": str(seed), "water.row.pressure": pressure}
+    case = read(path, differs)
     with TemporaryDirectory() as folder:
-        loose = read(path, {**SETTLING, "seed": str(seed)})
+        loose = read(path, {**SETTLING, **differs})
         settled = whole(run(loose, f"{folder}/settled", progress=False))
         scene = build(case).scene
         x = np.array(settled.frames.x[-1])
@@ -175,20 +178,25 @@ def _within(x: Floats, low: float, high: float) -> NDArray[np.bool_]:
     return (x > low) & (x < high)
 
 
-def _break(seed: int) -> Task:
-    return calculation(broken, seed=seed, seconds=700.0)
+def dam_break(seed: int, pressure: str = "hydrostatic") -> Task:
+    """The task of `broken`."""
+    differs = {} if pressure == "hydrostatic" else {"pressure": pressure}
+    return calculation(broken, seed=seed, seconds=700.0, **differs)
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
     """Two seeds, at the full level alone: some ten minutes each, the settling of the bed included."""
-    return [_break(seed) for seed in SEEDS] if plan.level is Level.FULL else []
+    return [dam_break(seed) for seed in SEEDS] if plan.level is Level.FULL else []
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """The four signs, by the seed that shows each least."""
-    if plan.level is not Level.FULL:
-        return []
-    runs = [found[_break(seed)] for seed in SEEDS]
+    return [finding(found, SEEDS)] if plan.level is Level.FULL else []
+
+
+def finding(found: Found, seeds: Sequence[int], pressure: str = "hydrostatic", under: str = "") -> Finding:
+    """The four signs with these seeds; `under` says the pressure in words."""
+    runs = [found[dam_break(seed, pressure)] for seed in seeds]
     t, x = runs[0]["t"], runs[0]["x"]
     ends = [front(x, one["surface"][-1]) for one in runs]
     depths = [np.maximum(one["surface"][-1] - one["rest"], 0.0) for one in runs]
@@ -201,7 +209,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     moving = [scour(x, one["rest"]) for one in runs]
     ours = [
         Curve(f"{name}, seed {seed}", x - GATE, 100.0 * one[name][-1])
-        for seed, one in zip(SEEDS, runs, strict=True)
+        for seed, one in zip(seeds, runs, strict=True)
         for name in ("surface", "bed")
     ]
     closed = Curve(
@@ -214,13 +222,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             ("reach", reaches), ("front over sqrt(g h_0)", speeds),
         )
     )  # fmt: skip
-    return [
-        DECLARED["dam-break-bed"].finding(
-            ours, [closed],
-            {
-                "scour": min(scours), "rise": min(rises), "lead": min(leads), "reach": min(reaches),
-                "front": float(np.mean(speeds)), "moving": float(np.mean(moving)),
-            },
-            [Curve("bed at the start", x - GATE, np.full(len(x), 100.0 * BED))], said=said,
-        )
-    ]  # fmt: skip
+    return DECLARED["dam-break-bed"].finding(
+        ours, [closed],
+        {
+            "scour": min(scours), "rise": min(rises), "lead": min(leads), "reach": min(reaches),
+            "front": float(np.mean(speeds)), "moving": float(np.mean(moving)),
+        },
+        [Curve("bed at the start", x - GATE, np.full(len(x), 100.0 * BED))],
+        said=said, seeds=len(seeds), under=under,
+    )  # fmt: skip

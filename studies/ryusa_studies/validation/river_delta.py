@@ -14,7 +14,7 @@ from ryusa.model.feeds import IN, OUT
 from ryusa.results import Results
 from ryusa.results.water import WaterFrames
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, case_run
-from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.declared import NONE, Settings, declared
 
 DECLARED = declared(__file__)
 
@@ -29,11 +29,13 @@ CORE = 0.015, 0.035  # heights between which the concentration of the deposit is
 FLANK = 0.25, 0.75  # shares of its height between which a slope is fitted
 
 
-def _delta(seed: int) -> CaseRun:
-    return case_run(case_path("delta.toml"), {"stop.time": f"{END:g} s"}, seed=seed)
+def delta(seed: int, more: Settings = NONE) -> CaseRun:
+    """A delta, with settings that differ from its case."""
+    return case_run(case_path("delta.toml"), {"stop.time": f"{END:g} s", **more}, seed=seed)
 
 
-def _pile(seed: int) -> CaseRun:
+def pile(seed: int) -> CaseRun:
+    """A pile of the same grains in still water."""
     return case_run(case_path("validation/pile.toml"), seed=seed)
 
 
@@ -41,7 +43,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     """Two deltas and two piles, at the full level alone: an hour and a quarter of an hour each."""
     if plan.level is not Level.FULL:
         return []
-    return [one(seed) for seed in SEEDS for one in (_delta, _pile)]
+    return [one(seed) for seed in SEEDS for one in (delta, pile)]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
@@ -153,7 +155,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """The delta beside its balance, and its front beside a pile of the same grains."""
     if plan.level is not Level.FULL:
         return []
-    deltas, piles = ([found[one(seed)] for seed in SEEDS] for one in (_delta, _pile))
+    return [finding(found, SEEDS)]
+
+
+def finding(found: Found, seeds: Sequence[int], more: Settings = NONE, under: str = "") -> Finding:
+    """What deltas do beside piles in still water; `under` says in words what settings differ."""
+    deltas = [found[delta(seed, more)] for seed in seeds]
+    piles = [found[pile(seed)] for seed in seeds]
     ways = [
         float((got["front"][-1] - got["front"][0]) / (got["expected"][-1] - got["front"][0]))
         for got in deltas
@@ -163,10 +171,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     one = deltas[0]
     each = ", ".join(f"{float(got['angle']):.1f}" for got in deltas)
     own = ", ".join(f"{float(got['angle']):.1f}" for got in piles)
-    return [
-        DECLARED["delta"].finding(
-            [Curve("front", one["t"], one["front"])], [Curve("front", one["t"], one["expected"])],
-            {"missing": max(float(got["missing"]) for got in deltas), "way": worst_way, "angle": worst_angle},
-            ways=', '.join(f'{way:.3f}' for way in ways), core=float(one['core']), each=each, own=own,
-        )
-    ]  # fmt: skip
+    return DECLARED["delta"].finding(
+        [Curve("front", one["t"], one["front"])], [Curve("front", one["t"], one["expected"])],
+        {"missing": max(float(got["missing"]) for got in deltas), "way": worst_way, "angle": worst_angle},
+        ways=', '.join(f'{way:.3f}' for way in ways), core=float(one['core']), each=each, own=own,
+        seeds=len(seeds), under=under,
+    )  # fmt: skip

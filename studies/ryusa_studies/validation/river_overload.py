@@ -14,7 +14,7 @@ from ryusa.results import Results
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, case_run
 from ryusa_studies.validation import river_dam as dam
 from ryusa_studies.validation import river_exner as exner
-from ryusa_studies.validation.declared import declared
+from ryusa_studies.validation.declared import NONE, Settings, declared
 
 DECLARED = declared(__file__)
 
@@ -69,8 +69,10 @@ def rise(x: Floats, t: float, extra: float, core: float, diffusion: float, steep
     return r / POINTS * (weight * image).real.sum(axis=1)
 
 
-def _run(extra: bool, seed: int) -> CaseRun:
-    return case_run(case_path("validation/overload.toml"), {} if extra else {"feeds": WITHOUT}, seed=seed)
+def bed(extra: bool, seed: int, more: Settings = NONE) -> CaseRun:
+    """A bed with or without the extra feed, with settings that differ from its case."""
+    differs = {**({} if extra else {"feeds": WITHOUT}), **more}
+    return case_run(case_path("validation/overload.toml"), differs, seed=seed)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -80,7 +82,7 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     """
     if plan.level is not Level.FULL:
         return []
-    return [_run(extra, seed) for seed in SEEDS for extra in (True, False)]
+    return [bed(extra, seed) for seed in SEEDS for extra in (True, False)]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
@@ -110,15 +112,18 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """The rise of the bed against linear theory."""
-    if plan.level is not Level.FULL:
-        return []
+    return [finding(found, SEEDS)] if plan.level is Level.FULL else []
+
+
+def finding(found: Found, seeds: Sequence[int], more: Settings = NONE, under: str = "") -> Finding:
+    """The rise of beds with these seeds; `under` says in words what settings differ from the case."""
     even = [found[dam.even_bed(*one)] for one in dam.LOW.beds]
     points = [(float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"])) for e in even]
     q_s, derivative, error = exner.transport_slope(points, SLOPE, DISCHARGE).tolist()
     flow = even[-1]  # that of the slope and nearly the discharge of the case
     core, depth, froude = (float(flow[key]) for key in ("core", "depth", "froude"))
     diffusion, steep, f = derivative / core, 3.0 * SLOPE / depth, 1.0 - froude**2
-    pairs = [[found[_run(extra, seed)] for extra in (True, False)] for seed in SEEDS]
+    pairs = [[found[bed(extra, seed, more)] for extra in (True, False)] for seed in seeds]
     x, t = pairs[0][0]["x"], float(pairs[0][0]["t"]) - BEGIN
     reach = (x > FED) & (x < SILL)
     at = x[reach] - FED
@@ -133,12 +138,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for fed, bare in pairs
     ]
     each = ", ".join(f"{float(one @ theory / (theory @ theory)):.3f}" for one in rises)
-    return [
-        DECLARED["overload"].finding(
-            [Curve(f"seed {seed}", at, 1e3 * one) for seed, one in zip(SEEDS, rises, strict=True)],
-            [Curve("linear theory", at, 1e3 * theory)],
-            {"rise": share, "shape": off, "stored": float(np.mean(stored)), "error": error},
-            extra=1e4 * EXTRA, t=t, each=each, diffusion=1e4 * diffusion, derivative=1e4 * derivative,
-            core=core, q_s=1e4 * q_s, q_s_2=EXTRA / q_s, depth=1e3 * depth, froude=froude,
-        )
-    ]  # fmt: skip
+    return DECLARED["overload"].finding(
+        [Curve(f"seed {seed}", at, 1e3 * one) for seed, one in zip(seeds, rises, strict=True)],
+        [Curve("linear theory", at, 1e3 * theory)],
+        {"rise": share, "shape": off, "stored": float(np.mean(stored)), "error": error},
+        extra=1e4 * EXTRA, t=t, each=each, diffusion=1e4 * diffusion, derivative=1e4 * derivative,
+        core=core, q_s=1e4 * q_s, q_s_2=EXTRA / q_s, depth=1e3 * depth, froude=froude, under=under,
+    )  # fmt: skip

@@ -22,6 +22,7 @@ from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
 from ryusa_studies.validation import river_immersed as immersed
+from ryusa_studies.validation import river_pressure_beds as beds
 from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_pressure import BOTH, WALLS, G, water
 
@@ -148,15 +149,18 @@ def _rising() -> Task:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Ten seconds, without seepage when quick; at the full level half an hour more."""
+    """Ten seconds, without seepage when quick; at the full level three hours more."""
     every = [*_sinking(), *([] if plan.level is Level.QUICK else _seeping()), _rising()]
-    return [*every, *immersed.tasks()] if plan.level is Level.FULL else every
+    return [*every, *immersed.tasks(), *beds.tasks()] if plan.level is Level.FULL else every
+
+
+measure = beds.measure  # the other tasks are calculations
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Each beside a closed form; columns under water by what experiments show."""
+    """Each beside a closed form; columns under water by experiments; beds by the limits of others."""
     every = [_borne(found), *([] if plan.level is Level.QUICK else [_seeps(found)]), _rises(found)]
-    return [*every, *immersed.judge(found)] if plan.level is Level.FULL else every
+    return [*every, *immersed.judge(found), *beds.judge(found)] if plan.level is Level.FULL else every
 
 
 def _borne(found: Found) -> Finding:

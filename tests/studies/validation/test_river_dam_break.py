@@ -41,7 +41,7 @@ def results(scoured=2.0, bump=0.02, at_front=0.3, at_gate=0.1, up_to=1.0):
 def verdicts(**given):
     """Whether each sign shows where one seed of two has it as given, by its band."""
     one, other = over_bed.SEEDS
-    found = {over_bed._break(one): results(), over_bed._break(other): results(**given)}
+    found = {over_bed.dam_break(one): results(), over_bed.dam_break(other): results(**given)}
     (finding,) = over_bed.judge(found, PLAN)
     return finding.outcome, [trial.holds for trial in finding.trials if trial.judged]
 
@@ -82,7 +82,7 @@ def test_the_front_of_ritter_is_where_his_depth_is_one_diameter():
 def test_a_wave_that_reaches_the_bed_of_reference_misses_what_needs_its_front():
     far = results()
     far["surface"] = far["surface"] + np.where(X < 1.65, 0.05, 0.0)
-    found = {over_bed._break(seed): far for seed in over_bed.SEEDS}
+    found = {over_bed.dam_break(seed): far for seed in over_bed.SEEDS}
     (finding,) = over_bed.judge(found, PLAN)
     assert [trial.holds for trial in finding.trials if trial.judged] == [True, False, False, False]
 
