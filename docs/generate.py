@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cited import filled, kept, untrue
+from evidence_ages import page_lines as evidence_with_ages
 from paper_tables import paper_table, with_tables
 from registered_tables import changed_bands, changed_texts
 
@@ -321,6 +322,7 @@ def pages() -> dict[Path, str]:
         HERE / "paper.md": filled(with_tables(_between_markers(HERE / "paper.md", paper_table()))),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "validation-bands.md": _between_markers(HERE / "validation-bands.md", validation_bands()),
+        HERE / "evidence-ages.md": _between_markers(HERE / "evidence-ages.md", evidence_with_ages()),
         HERE / "case.schema.json": json_schema_text(),
         **ledger_summaries(),
     }
