@@ -17,6 +17,7 @@ from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
+from ryusa_studies.validation import river_bar as over_bar
 from ryusa_studies.validation import river_jump as jump
 from ryusa_studies.validation import river_sill as sill
 from ryusa_studies.validation.declared import declared
@@ -263,11 +264,11 @@ def _of_both(function: object) -> list[Task]:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Four minutes with jumps and sills; when quick without what takes longest, or misses its limit."""
+    """Nine minutes with jumps, sills and the bar; when quick without what takes longest, or misses its limit."""
     every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, _alone(), *_of_both(collapse), *jump.tasks(), *sill.tasks()]
+    return [*every, _alone(), *_of_both(collapse), *jump.tasks(), *sill.tasks(), *over_bar.tasks()]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -275,7 +276,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     every = [_standing(found), _wavy(found, plan), _pore(found), _plate(found), _brink(found)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, _solitary(found), _collapse(found), *jump.judge(found), *sill.judge(found)]
+    return [
+        *every,
+        _solitary(found),
+        _collapse(found),
+        *jump.judge(found),
+        *sill.judge(found),
+        *over_bar.judge(found),
+    ]
 
 
 def _standing(found: Found) -> Finding:
