@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 from ryusa.figures.comparison import Curve
 from ryusa.laws.families import Pressure, SurfaceRule
@@ -54,7 +54,7 @@ def bar(pressure: str) -> dict[str, Floats]:
     Where the row begins a discharge c A sin(omega t) comes and goes, c and A speed and amplitude of the wave.
     """
     omega = 2.0 * math.pi / PERIOD
-    k = float(brentq(lambda k: G * k * math.tanh(k * DEPTH) - omega**2, 0.1, 10.0))
+    k = root_scalar(lambda k: G * k * math.tanh(k * DEPTH) - omega**2, bracket=(0.1, 10.0)).root
     first, *_ = measured().values()
     amplitude = 1e-3 * float(harmonics(first[:, 0], first[:, 1])[0])
     n = round(LENGTH / DX)
@@ -75,8 +75,9 @@ def bar(pressure: str) -> dict[str, Floats]:
         now = advance_row(row, now, EACH, longest=longest, arrays=RowArrays.of(row))
         if now.t > begin:
             t.append(now.t)
-            surfaces.append(1e3 * np.interp(gauges, x, now.surface[row.inner] - DEPTH))
-    return {"t": np.array(t), "surface": np.array(surfaces).T}
+            surfaces.append(1e3 * np.interp(gauges, x, now.surface[row.inner] + row.bottom))
+    over = np.array(surfaces).T
+    return {"t": np.array(t), "surface": over - over[:, np.array(t) > first[0, 0]].mean(axis=1)[:, None]}
 
 
 def measured() -> dict[str, Floats]:
@@ -125,9 +126,10 @@ def _behind(
 
 
 def tasks() -> list[Task]:
-    """Two runs of some minutes."""
+    """Two runs, of three minutes and of one."""
     return [
-        calculation(bar, pressure=one.word, seconds=150.0) for one in (Pressure.FULL, Pressure.HYDROSTATIC)
+        calculation(bar, pressure=one.word, seconds=seconds)
+        for one, seconds in ((Pressure.FULL, 200.0), (Pressure.HYDROSTATIC, 70.0))
     ]
 
 
