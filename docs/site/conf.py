@@ -44,6 +44,7 @@ extensions = [
     "numpydoc",
     "sphinx.ext.viewcode",
     "sphinx_design",
+    "languages",
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
@@ -83,7 +84,7 @@ html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
     "logo": {"text": "ryusa 流砂"},
-    "header_links_before_dropdown": 8,
+    "header_links_before_dropdown": 9,
     "collapse_navigation": True,  # otherwise every page holds the tree of all modules
     "navigation_depth": 3,
     "show_nav_level": 1,
@@ -97,7 +98,7 @@ html_theme_options = {
     "pygments_light_style": "tango",
     "pygments_dark_style": "monokai",
 }
-html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": [], "theory": []}
+html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": [], "theory": [], "ja/*": []}
 
 
 class KnownNames(PythonDomain):

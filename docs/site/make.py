@@ -24,6 +24,7 @@ import listings
 FENCE = re.compile(r"^(```|~~~|:::).*?^\1", flags=re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?P<text>\[[^\]]*\])\((?P<target>[^)\s#]+)(?P<anchor>#[^)\s]*)?\)")
 UNLISTED, LEDGERS = "@unlisted", "@ledgers"  # in the table of contents of a page
+CONTENTS = re.compile(r"^<!-- contents: (.*) -->$", flags=re.MULTILINE)  # of a page read elsewhere too
 REMOTE = re.compile(r"^[a-z]+:")
 
 
@@ -31,7 +32,8 @@ def places() -> dict[Path, str]:
     """File of the repository to its place in the site, for every page written by hand."""
     found = {page: page.name for page in sorted((ROOT / "docs").glob("*.md"))}
     found |= {page: page.name for page in sorted((HERE / "pages").glob("*.md"))}
-    for folder, place in (("docs/ledgers", "ledgers"), ("design", "design"), ("design/lab", "design/lab")):
+    for folder in ("docs/ja", "docs/ledgers", "design", "design/lab"):
+        place = folder.removeprefix("docs/")
         found |= {page: f"{place}/{page.name}" for page in sorted((ROOT / folder).glob("*.md"))}
     found[ROOT / "CONTRIBUTING.md"] = "contributing.md"
     found[ROOT / "benchmarks" / "README.md"] = "benchmarks.md"
@@ -66,10 +68,11 @@ class Stage:
             text = page.read_text(encoding="utf-8").replace(UNLISTED, "\n".join(self.unlisted()))
             ledgers = [one.removesuffix(".md") for one in self.places.values() if one.startswith("ledgers/")]
             text = text.replace(LEDGERS, "\n".join(ledgers))
+            text = CONTENTS.sub(r"```{toctree}\n:hidden:\n\n\1\n```", text)
             self.write(place, self.relinked(text, page, place))
         shutil.copytree(HERE / "static", self.folder / "static")
-        shutil.copy(HERE / "conf.py", self.folder)
-        shutil.copy(HERE / "docstrings.py", self.folder)
+        for settings in ("conf.py", "docstrings.py", "languages.py"):
+            shutil.copy(HERE / settings, self.folder)
 
     def unlisted(self) -> list[str]:
         """Pages that no table of contents names: they stand at the end of the how-to guides."""
