@@ -208,7 +208,7 @@ def questions() -> str:
     for one in QUESTIONS:
         cases = "<br>".join(minutes(name) for name in one.cases) or "none"
         typed = "<br>".join(f"`{command}`" for command in one.commands)
-        lines.append(f"| {one.asked} | {cases} | {typed} | {one.answer} |")
+        lines.append(f"| [{one.asked}]({one.page}) | {cases} | {typed} | {one.answer} |")
     return "\n".join(lines)
 
 

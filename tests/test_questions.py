@@ -1,4 +1,7 @@
-"""Every packaged case is found by a question, and what a question tells to type exists."""
+"""Every packaged case is found by a question, and what a question tells to type and to read exists."""
+
+import re
+from pathlib import Path
 
 from typer.testing import CliRunner
 
@@ -21,6 +24,14 @@ def test_commands_name_measures_and_pictures_that_exist() -> None:
     commands = {name for word in words if word[0] == "ryusa" for name in word[1:2]}
     help_ = CliRunner().invoke(app, ["--help"]).output
     assert all(name in help_ for name in commands)
+
+
+def test_every_question_leads_to_a_heading_of_a_page() -> None:
+    docs = Path(__file__).parents[1] / "docs"
+    for one in QUESTIONS:
+        page, _, heading = one.page.partition("#")
+        found = re.findall(r"^#+ (.+)$", (docs / page).read_text(encoding="utf-8"), re.MULTILINE)
+        assert not heading or heading in {title.lower().replace(" ", "-") for title in found}, one.page
 
 
 def test_new_without_a_name_lists_the_cases_by_question() -> None:

@@ -1,4 +1,4 @@
-"""Pages that list what the package holds: every law, every packaged case."""
+"""Lists of what the package holds: every law, every packaged case, every question that a case answers."""
 
 import ast
 import importlib
@@ -109,3 +109,15 @@ def cases_page() -> str:
             lines += ["", f"## {kind}", "", "```sh", f"ryusa new {kind}", "```", "", "```toml"]
             lines += [entry.read_text(encoding="utf-8").rstrip(), "```"]
     return "\n".join([*lines, ""])
+
+
+def questions() -> str:
+    """Rows of the front page: what a user asks, what to type first, what comes out."""
+    from ryusa.cases.questions import QUESTIONS
+
+    lines = []
+    for one in QUESTIONS:
+        first = f"ryusa new {one.cases[0]}" if one.cases else next(iter(one.commands), "")
+        typed = f"`{first}`" if first else ""
+        lines.append(f"| [{one.asked}]({one.page}) | {typed} | {one.answer} |")
+    return "\n".join(lines)

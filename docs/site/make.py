@@ -25,6 +25,7 @@ FENCE = re.compile(r"^(```|~~~|:::).*?^\1", flags=re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?P<text>\[[^\]]*\])\((?P<target>[^)\s#]+)(?P<anchor>#[^)\s]*)?\)")
 UNLISTED, LEDGERS = "@unlisted", "@ledgers"  # in the table of contents of a page
 CONTENTS = re.compile(r"^<!-- contents: (.*) -->$", flags=re.MULTILINE)  # of a page read elsewhere too
+QUESTIONS = "@questions"  # a table of what users come with
 REMOTE = re.compile(r"^[a-z]+:")
 
 
@@ -67,7 +68,7 @@ class Stage:
                 continue  # the site has its own front page, to which links to the README lead
             text = page.read_text(encoding="utf-8").replace(UNLISTED, "\n".join(self.unlisted()))
             ledgers = [one.removesuffix(".md") for one in self.places.values() if one.startswith("ledgers/")]
-            text = text.replace(LEDGERS, "\n".join(ledgers))
+            text = text.replace(LEDGERS, "\n".join(ledgers)).replace(QUESTIONS, listings.questions())
             text = CONTENTS.sub(r"```{toctree}\n:hidden:\n\n\1\n```", text)
             self.write(place, self.relinked(text, page, place))
         shutil.copytree(HERE / "static", self.folder / "static")

@@ -58,6 +58,18 @@ def test_links_of_all_pages_lead_to_files_and_a_broken_one_is_found(tmp_path: Pa
     assert len(stage.problems) == 1 and "nowhere.md" in stage.problems[0]
 
 
+def test_the_front_page_has_every_question_with_what_to_type_and_read(tmp_path: Path) -> None:
+    from ryusa.cases.questions import QUESTIONS
+
+    stage = site("make").Stage(tmp_path / "stage")
+    stage.gather()
+    front = (stage.folder / "index.md").read_text(encoding="utf-8")
+    for one in QUESTIONS:
+        assert f"| [{one.asked}]({one.page}) |" in front
+        assert not one.cases or f"`ryusa new {one.cases[0]}`" in front
+    assert "](beside-other-programs.md)" in front and "@questions" not in front
+
+
 def test_links_are_rewritten_for_the_place_of_a_page(tmp_path: Path) -> None:
     stage = site("make").Stage(tmp_path / "stage")
     note = DOCS.parent / "design" / "0003-readings-of-the-paper.md"
