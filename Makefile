@@ -37,7 +37,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check packages packages-check ages reviewed release constraints clean
+.PHONY: help demo test test-all before-tests pages check lint format types walls quick unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden kernels kernels-check packages packages-check ages drill reviewed release constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -184,11 +184,14 @@ kernels-check: $(HAS_RYUSA) ## first runs from these two wheels alone: nothing c
 packages: $(HAS_RYUSA) ## wheels and source distributions of ryusa and its studies from a clean clone, in dist/, the same bytes twice
 	$(BIN)/python release/build.py dist
 
-packages-check: $(HAS_RYUSA) ## install dist/ on every Python at hand, with the newest and the oldest packages, and use it (half an hour)
+packages-check: $(HAS_RYUSA) ## install dist/ on every Python at hand, with the newest and the oldest packages, and use it (twenty minutes)
 	$(BIN)/python release/install.py dist
 
 ages: $(HAS_RYUSA) ## when each kept table was made, and what has changed since
 	@$(BIN)/python docs/evidence_ages.py
+
+drill: $(HAS_RYUSA) ## use the wheel of dist/ as others will: no right to write, a full disk, no network, LANG=C, Japanese (ten minutes)
+	$(BIN)/python release/drill.py dist
 
 reviewed: $(HAS_TESTS) ## the checks of others: repo-review, validate-pyproject, pyroma, cffconvert, check-jsonschema, rattler-build, zizmor, hadolint, twine
 	@$(BIN)/uv venv --quiet --clear $(REVIEW)
@@ -208,7 +211,7 @@ release: ## everything that a release needs, from a clean clone in build/release
 	rm -rf build/release
 	git clone --quiet --no-local . build/release
 	$(MAKE) -C build/release test-all site kernels kernels-check
-	$(MAKE) -C build/release packages packages-check reviewed ages
+	$(MAKE) -C build/release packages packages-check drill reviewed ages
 	@cat release/left.md
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds

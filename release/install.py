@@ -8,6 +8,7 @@ doctests of the installed package; with the newest a script of a user under pyri
 them every extra is installed, and what it is for is asked.
 """
 
+import io
 import os
 import re
 import shlex
@@ -15,10 +16,13 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stdout
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 UV = Path(sys.executable).with_name("uv")
+AT_A_TIME = 2  # environments; each compiles on one core
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 ENDS = {"newest": "highest", "oldest": "lowest-direct"}
 SHOWN = ("numpy", "numba", "h5py", "pydantic", "scipy", "matplotlib")
@@ -57,12 +61,32 @@ def main() -> None:
     os.environ.pop("PYTHONPATH", None)
     os.environ["RYUSA_RUN_TIMES"] = "off"
     found = {name: python for name in named or PYTHONS if (python := interpreter(name))}
-    for name, python in found.items():
-        for end in ENDS:
-            with tempfile.TemporaryDirectory() as folder:
-                Environment(Path(folder), dist, name, python, end).check(extras=name == next(iter(found)))
+    with ProcessPoolExecutor(AT_A_TIME) as pool:
+        every = [
+            pool.submit(checked, dist, name, python, end, extras=name == next(iter(found)))
+            for name, python in found.items()
+            for end in ENDS
+        ]
+        for one in every:
+            print(one.result(), end="")
     for name in sorted(set(named or PYTHONS) - found.keys()):
         print(f"Python {name}: not at hand, not checked")
+
+
+def checked(dist: Path, name: str, python: str, end: str, *, extras: bool) -> str:
+    """Check DIST in one fresh environment; what there is to say.
+
+    Raises
+    ------
+    RuntimeError : what failed, after what was said before it.
+    """
+    said = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, redirect_stdout(said):
+        try:
+            Environment(Path(folder), dist, name, python, end).check(extras=extras)
+        except SystemExit as failed:  # it would end the process that has the others to do
+            raise RuntimeError(f"{said.getvalue()}{failed}") from None
+    return said.getvalue()
 
 
 def interpreter(name: str) -> str:
