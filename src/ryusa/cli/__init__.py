@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from ryusa.cli.signs import write_plainly
 from ryusa.errors import RyusaError
 from ryusa.version import described
 
@@ -93,6 +94,7 @@ except KeyboardInterrupt:  # while modules are loaded
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; `arguments` default to those of the process."""
     gc.set_threshold(OBJECTS)
+    write_plainly()
     given = sys.argv[1:] if arguments is None else arguments
     app(args=[at_home(one) for one in given], prog_name="ryusa")
 
