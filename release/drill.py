@@ -56,6 +56,7 @@ for name in ("x", "v"):
 FULL_HOME = 'mount -t tmpfs -o size=16k full "$HOME" && cat /dev/zero > "$HOME/full" 2>/dev/null; exec "$@"'
 NOBODY = 65534
 ORDINARY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups")
+OLD_ENOUGH = "import sys; sys.exit(sys.version_info < (3, 11))"
 AT_A_TIME = 2  # conditions
 
 
@@ -85,12 +86,7 @@ def python_for_all() -> str:
     """A Python that another user can start too: not one in the home of root."""
     for own in (sys.executable, shutil.which("python3", path="/usr/bin:/bin")):
         if own is not None and os.getuid() == 0:
-            words = [
-                *ORDINARY,
-                os.path.realpath(own),
-                "-c",
-                "import sys; sys.exit(sys.version_info < (3, 11))",
-            ]
+            words = [*ORDINARY, os.path.realpath(own), "-c", OLD_ENOUGH]
             if subprocess.run(words, check=False, capture_output=True).returncode == 0:
                 return own
     return sys.executable
@@ -200,19 +196,10 @@ def install(folder: Path, dist: Path) -> Path:
     """Install the wheel of DIST into an environment that all can read; its folder of programs."""
     env = folder / "env"
     wheel = next(dist.glob("ryusa-*.whl"))
+    python, own = env / "bin" / "python", ("--reinstall-package", "ryusa")
     for words in (
         (UV, "venv", "--quiet", "--python", python_for_all(), env),
-        (
-            UV,
-            "pip",
-            "install",
-            "--quiet",
-            "--python",
-            env / "bin" / "python",
-            "--reinstall-package",
-            "ryusa",
-            wheel,
-        ),
+        (UV, "pip", "install", "--quiet", "--python", python, *own, wheel),
     ):
         subprocess.run([str(one) for one in words], check=True)
     return env / "bin"

@@ -1,7 +1,6 @@
 """Waves over a bar, beside the surfaces that Dingemans 1994 measured at six gauges (design/0030)."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -95,34 +94,20 @@ def off(run: dict[str, Floats]) -> tuple[float, float, dict[str, tuple[Floats, F
     surfaces with the shift of time that makes it least, within one period, over that of those measured [-];
     and by gauge the amplitudes measured and found [mm].
     """
-    gauges = list(measured().items())
-    late = run["t"] > gauges[0][1][0, 0]  # whole periods, as measured
-    told = {
-        name: (harmonics(*one.T), harmonics(run["t"][late], own[late]))
-        for (name, one), own in zip(gauges, run["surface"], strict=True)
-    }
-    (first, _), *others = told.values()
+    pairs = list(zip(measured().items(), run["surface"], strict=True))
+    (_, first), _ = pairs[0]
+    late = run["t"] > first[0, 0]  # whole periods, as measured
+    told = {name: (harmonics(*one.T), harmonics(run["t"][late], own[late])) for (name, one), own in pairs}
+    (incoming, _), *others = told.values()
     amplitudes = np.array([one - own for one, own in others])
+    behind = [(one, own) for (_, one), own in pairs[1:]]
     apart = [
-        np.concatenate(
-            [
-                one[:, 1] - np.interp(one[:, 0] - shift, run["t"], own)
-                for (_, one), own in _behind(gauges, run)
-            ]
-        )
+        np.concatenate([one[:, 1] - np.interp(one[:, 0] - shift, run["t"], own) for one, own in behind])
         for shift in np.arange(0.0, PERIOD, 0.5 * EACH)
     ]
     least = min(float(np.sqrt((each**2).mean())) for each in apart)
-    whole = np.concatenate([one[:, 1] for _, one in gauges[1:]])
-    series = least / float(np.sqrt((whole**2).mean()))
-    return float(np.sqrt((amplitudes**2).mean())) / float(first[0]), series, told
-
-
-def _behind(
-    gauges: Sequence[tuple[str, Floats]], run: dict[str, Floats]
-) -> list[tuple[tuple[str, Floats], Floats]]:
-    """All gauges but the first, with the surfaces that were found."""
-    return list(zip(gauges, run["surface"], strict=True))[1:]
+    series = least / float(np.sqrt((np.concatenate([one[:, 1] for one, _ in behind]) ** 2).mean()))
+    return float(np.sqrt((amplitudes**2).mean())) / float(incoming[0]), series, told
 
 
 def tasks() -> list[Task]:
