@@ -159,8 +159,9 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 docs: $(HAS_RYUSA) ## write the reference pages, the tables of ledgers and the numbers in docs/paper.md anew
 	$(BIN)/python docs/generate.py
 
-site: $(HAS_DOCS) ## the documentation as a site: build/site/index.html; every warning is an error
+site: $(HAS_DOCS) ## the documentation as a site: build/site/index.html; every warning is an error, and every fault that axe-core finds on a page of each kind
 	$(BIN)/python docs/site/make.py build/site
+	$(BIN)/python -m tests.docs.check_site build/site
 
 pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; makes those that are missing
 	$(BIN)/ryusa paper fig07 spin_time hops fig20 fig21 water_torque -o $(PAPER) --jobs $(JOBS)

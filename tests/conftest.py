@@ -1,6 +1,9 @@
-"""Settings of all tests, and the quick level: `--quick` leaves out what is marked `full`."""
+"""Settings of all tests, the quick level (`--quick` leaves out what is marked `full`), and the browser."""
 
 import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -44,3 +47,23 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         from ryusa.engine.cpu import engine
 
         engine.PiecesOfStep = confined(engine.PiecesOfStep)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """A Chromium; where there is none, skipped, unless RYUSA_BROWSER says that there must be one."""
+    from tests.accessible import MISSING, chromium, chromium_path
+
+    if chromium_path() is None:
+        assert "RYUSA_BROWSER" not in os.environ, f"RYUSA_BROWSER is set, but there is {MISSING}"
+        pytest.skip(f"{MISSING}; the pages are not opened")
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture
+def faults_of(browser: Any) -> Callable[[Path], list[Any]]:
+    """What axe-core finds wrong on a page that lies on the disk, in light and in dark."""
+    from tests.accessible import faults_of_page
+
+    return lambda path: faults_of_page(browser, path)

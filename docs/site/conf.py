@@ -95,8 +95,6 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": ["theme-version"],
     "secondary_sidebar_items": ["page-toc"],
-    "pygments_light_style": "tango",
-    "pygments_dark_style": "monokai",
 }
 html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": [], "theory": [], "ja/*": []}
 
@@ -125,8 +123,23 @@ def notebooks_first(_app, _env, names):
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
 
 
+def name_toggles(_app, _page, _template, context, _doctree):
+    """Name the arrows that fold and unfold the navigation, which have no words in the theme."""
+    make = context["generate_toctree_html"]
+
+    def named(*args, **options):
+        found = make(*args, **options)
+        if not isinstance(found, str):
+            for arrow in found.select("li > details > summary"):
+                arrow["aria-label"] = f"pages of {arrow.find_parent('li').a.get_text()}"
+        return found
+
+    context["generate_toctree_html"] = named
+
+
 def setup(app):
     """Connect what turns the docstrings of ryusa into what numpydoc reads, the order of pages and names."""
     docstrings_setup(app)
     app.add_domain(KnownNames, override=True)
     app.connect("env-before-read-docs", notebooks_first)
+    app.connect("html-page-context", name_toggles, priority=900)  # after those of the theme

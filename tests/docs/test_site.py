@@ -9,6 +9,8 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from tests.accessible import Fault
+from tests.docs.check_site import is_known, pictures_without_words
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -115,3 +117,17 @@ def test_the_page_on_measuring_names_every_measure() -> None:
     )
     assert sorted(word for word, _ in rows) == sorted(one.name for one in MEASURES)
     assert all(callable(getattr(measure, name)) for _, name in rows)
+
+
+def test_a_picture_that_is_called_as_its_file_is_found(tmp_path: Path) -> None:
+    (tmp_path / "heap.html").write_text(
+        '<img src="a.png" alt="a heap"><img alt="_images/09af.png" src="b.png">'
+    )
+    assert pictures_without_words(tmp_path) == ["heap.html: a picture is called _images/09af.png"]
+
+
+def test_of_faults_only_those_of_the_theme_are_let_through() -> None:
+    fault = Fault("api.html", "light", "definition-list", "#ryusa\\.view > dl", "")
+    assert is_known(fault)
+    assert not is_known(fault._replace(place="main > dl"))
+    assert not is_known(fault._replace(rule="color-contrast"))

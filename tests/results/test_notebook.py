@@ -64,6 +64,7 @@ def test_a_figure_is_shown_as_a_picture(run):
 def test_pages_are_shown_within_a_frame_and_saved(run, tmp_path):
     page = run.view()
     assert page._repr_html_().startswith("<iframe srcdoc=")
+    assert f' title="{html.escape(run.case["title"])}"' in page._repr_html_()
     assert "<script" not in page._repr_html_()  # escaped, for the frame
     assert page.save(tmp_path / "new" / "view.html").read_text() == page.text
     assert "2 runs side by side" in run.report(run).text
@@ -74,6 +75,7 @@ def test_a_film_is_shown_by_its_kind_and_saved(run, tmp_path, kind, tag):
     av = pytest.importorskip("av") if kind == "mp4" else None
     film = run.film(kind, size=(480, 270), frames=3)
     shown = film._repr_html_()
+    assert '"film of the run"' in shown  # for who cannot see it
     assert shown.startswith(tag)
     held = base64.b64decode(re.search('base64,([^"]+)"', shown)[1])
     assert film.save(tmp_path / "new" / f"film.{kind}").read_bytes() == held

@@ -16,7 +16,7 @@ TABLE = PrintedTable(
 
 
 def shown(table):
-    return template(Path(ryusa.study.__file__).with_name("pieces.html")).module.table(table, "many")
+    return template(Path(ryusa.study.__file__).with_name("pieces.html")).module.table(table, "means", "many")
 
 
 def test_words_begin_at_the_left_and_numbers_end_at_the_right():

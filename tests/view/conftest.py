@@ -1,9 +1,5 @@
-import os
-import shutil
-from collections.abc import Iterator
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +8,12 @@ from ryusa.build import scene
 from ryusa.build.walls import WallMotion, rectangle, with_walls
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
+from ryusa.report.brief import brief_page
+from ryusa.report.page import report_page
 from ryusa.results import Results
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
 
-CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 PERIOD = 0.04  # m
 V = np.array([[0.1, 0.0, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.1]])
 X = np.array([[0.010, 0.010, 0.010], [0.036, 0.020, 0.010], [0.020, 0.030, 0.020]])
@@ -59,28 +56,12 @@ def dragged(three: Results) -> Results:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    """A Chromium; where there is none, skipped, unless RYUSA_BROWSER says that there must be one."""
-    path = next(
-        (
-            found
-            for name in ("chromium", "chromium-browser", "google-chrome")
-            if (found := shutil.which(name))
-        ),
-        None,
-    )
-    if path is None:
-        assert "RYUSA_BROWSER" not in os.environ, (
-            "RYUSA_BROWSER is set, but neither chromium nor google-chrome is there"
-        )
-        pytest.skip("no Chromium on this machine (apt install chromium); the pages are not opened")
-    from playwright.sync_api import sync_playwright
+def report(three: Results, saltation: Results) -> str:
+    """The page about both."""
+    return report_page([three, saltation], size=5.0e6)
 
-    with sync_playwright() as play:
-        # drawn by the processor, so that no graphics card is needed; no sandbox, since root has none
-        started = play.chromium.launch(
-            executable_path=path,
-            args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-        )
-        yield started
-        started.close()
+
+@pytest.fixture(scope="session")
+def brief(saltation: Results) -> str:
+    """The sheet about grains that hop."""
+    return brief_page([saltation])

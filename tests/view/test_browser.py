@@ -53,12 +53,12 @@ def settled(page):
 
 
 def looked_at(page, k):
-    """The side view of frame k, without perspective, bed, walls, box and words, and metres per pixel."""
+    """The side view of frame k, grains alone and without perspective, and metres per pixel."""
     page.evaluate(
         """k => { const v = ryusaViewers[0]; v.camera.flat = true; v.fixedShown = v.wallsShown = false;
         v.frame = () => [];
         for (const one of v.holder.children) if (one !== v.canvas) one.style.visibility = 'hidden';
-        v.look('side'); v.seek(k); }""",
+        document.activeElement.blur(); v.look('side'); v.seek(k); }""",
         k,
     )
     settled(page)
@@ -205,7 +205,7 @@ def test_a_page_without_webgl2_says_what_is_missing(browser, folder, three):
 def test_a_title_made_of_script_is_shown_and_not_run(opened, three, monkeypatch):
     monkeypatch.setitem(three.case, "title", "</script><img src=x onerror='document.title=1'><b>bold")
     page = opened(three, "script.html")
-    assert page.inner_text(".head strong").endswith("<b>bold")
+    assert page.inner_text(".head .title").endswith("<b>bold")
     assert page.evaluate("document.title").startswith("</script>")
 
 
@@ -241,8 +241,8 @@ def until(page, condition):
     raise AssertionError(condition)
 
 
-def test_a_report_of_two_runs_plays_both(opened, three, saltation):
-    page = opened([three, saltation], "report.html", lambda runs: report_page(runs, size=5.0e6))
+def test_a_report_of_two_runs_plays_both(opened, report):
+    page = opened(report, "report.html", str)
     assert page.locator(".grains").count() == 2
     for k in range(2):
         page.locator(".bar button[title^=play]").nth(k).click()
@@ -252,13 +252,15 @@ def test_a_report_of_two_runs_plays_both(opened, three, saltation):
     assert page.evaluate(broken) == 0
 
 
-def test_a_brief_prints_on_one_sheet_however_much_it_has_to_say(browser, saltation, folder, monkeypatch):
+def test_a_brief_prints_on_one_sheet_however_much_it_has_to_say(
+    browser, saltation, brief, folder, monkeypatch
+):
     for loaded in (False, True):
         if loaded:
             monkeypatch.setitem(saltation.case, "title", "A title of many words " * 12)
             warnings = [f"{'this warning is long ' * 20} {'abcdefgh'[k]}" for k in range(8)]
             monkeypatch.setitem(saltation.summary, "warnings", warnings)
-        text = brief_page([saltation])
+        text = brief_page([saltation]) if loaded else brief
         (folder / "brief.html").write_text(text, encoding="utf-8")
         assert write_pdf(text, folder / "brief.pdf") == 1
         page = browser.new_page()

@@ -46,7 +46,7 @@ def view(
     """Write one page that shows the grains of a run in motion: open it by a double click.
 
     The page holds everything itself: it needs no server, no network and no ryusa. Turn, shift and zoom with
-    the mouse; colour by speed, height, spin, size or contacts; follow a grain. "?" lists the keys.
+    the mouse or by keys; colour by speed, height, spin, size or contacts; follow a grain. "?" lists the keys.
     """
     from ryusa.results import schema
     from ryusa.view.page import view_page

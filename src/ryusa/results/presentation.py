@@ -2,6 +2,7 @@
 
 import base64
 import html
+import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 
 _HEIGHT = 560  # pixels of a page within a notebook
+_FILM = "film of the run"
 
 
 @dataclass(frozen=True)
@@ -49,9 +51,11 @@ class Page:
 
     def _repr_html_(self) -> str:
         inside = html.escape(self.text, quote=True)
+        titled = re.search(r"<title>(.*?)</title>", self.text, flags=re.DOTALL)
+        title = html.escape(html.unescape(titled[1]), quote=True) if titled else "page of ryusa"
         return (
-            f'<iframe srcdoc="{inside}" style="width: 100%; height: {self.height}px; border: 0" '
-            'sandbox="allow-scripts allow-downloads"></iframe>'
+            f'<iframe srcdoc="{inside}" title="{title}" sandbox="allow-scripts allow-downloads" '
+            f'style="width: 100%; height: {self.height}px; border: 0"></iframe>'
         )
 
 
@@ -81,8 +85,11 @@ class FilmFile:
     def _repr_html_(self) -> str:
         held = base64.b64encode(self.data).decode("ascii")
         if self.kind == "mp4":
-            return f'<video src="data:video/mp4;base64,{held}" style="max-width: 100%" controls loop></video>'
-        return f'<img src="data:image/{self.kind};base64,{held}" style="max-width: 100%">'
+            return (
+                f'<video src="data:video/mp4;base64,{held}" aria-label="{_FILM}" style="max-width: 100%" '
+                "controls loop></video>"
+            )
+        return f'<img src="data:image/{self.kind};base64,{held}" alt="{_FILM}" style="max-width: 100%">'
 
 
 def saved(data: bytes, path: Path) -> Path:

@@ -75,13 +75,15 @@ function drawAxes(canvas, camera, gravity) {
   const [pen, w, h] = fitted(canvas), [right, up] = camera.axes, long = 0.36 * Math.min(w, h);
   const strong = Math.hypot(...gravity) || 1;
   const arrows = [["x", [1, 0, 0], "#b5442d"], ["y", [0, 1, 0], "#3a7d44"], ["z", [0, 0, 1], "#2f5f98"], ["g", gravity.map((one) => 0.8 * one / strong), "#333"]];
-  pen.lineWidth = 1.6; pen.textAlign = "center"; pen.textBaseline = "middle";
+  pen.textAlign = "center"; pen.textBaseline = "middle"; pen.lineJoin = "round";
   for (const [name, way, colour] of arrows) {
     const x = dot(way, right), y = -dot(way, up), length = Math.hypot(x, y);
     if (length < 0.08) continue;
-    pen.strokeStyle = pen.fillStyle = colour;
+    pen.strokeStyle = pen.fillStyle = colour; pen.lineWidth = 1.6;
     pen.beginPath(); pen.moveTo(w / 2, h / 2); pen.lineTo(w / 2 + long * x, h / 2 + long * y); pen.stroke();
-    const more = 1 + 8 / (long * length);
-    pen.fillText(name, w / 2 + long * x * more, h / 2 + long * y * more);
+    const more = 1 + 8 / (long * length), letter = [name, w / 2 + long * x * more, h / 2 + long * y * more];
+    pen.strokeStyle = "#f6f7f9"; pen.lineWidth = 4;
+    pen.strokeText(...letter);  // legible over grains too
+    pen.fillText(...letter);
   }
 }

@@ -26,7 +26,7 @@ from ryusa.view.flow import flow_of
 from ryusa.view.picture import MOST_FACES
 
 HERE = Path(__file__).parent
-SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js")
+SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js", "hands.js")
 SIZE = 10.0e6  # of a page, unless asked otherwise [B]
 LEAST_SIZE = 2.0e5  # page without grains: script, style, walls [B]
 FEW_FRAMES = 60  # frames are thinned down to these before grains are left out,

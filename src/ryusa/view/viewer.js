@@ -1,13 +1,7 @@
-// A viewer: state, what is shown at a moment, and the hands on it.
+// A viewer: its state, and what is shown at a moment.
 
 const SIDE = 205;  // pixels of the water's profile
 const SECONDS = 12;  // that a whole run takes at first
-const HELP = [
-  ["space", "play, pause"], ["\u2190 \u2192", "one frame back, on"], ["Home End", "first, last frame"], ["\u2191 \u2193", "faster, slower"],
-  ["drag", "turn"], ["shift + drag, right button", "shift"], ["wheel, + \u2212", "zoom"], ["1 2 3", "oblique view, from the side, from above"],
-  ["o", "perspective on, off"], ["c", "next colouring"], ["click a grain", "choose it, show its track"], ["f", "follow it"], ["Esc", "let it go"],
-  ["b", "fixed grains on, off"], ["w", "walls and water on, off"], ["a", "arrows of the water on, off"], ["p", "save a picture (PNG)"], ["h ?", "this list"],
-];
 const VIEWS = { oblique: [-1.15, 0.38], side: [-Math.PI / 2, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-4] };
 
 class Viewer {
@@ -29,28 +23,31 @@ class Viewer {
     const { holder, data } = this;
     holder.classList.add("ryusa-view");
     holder.tabIndex = 0;
-    this.canvas = element("canvas", holder, { className: "grains" });
+    holder.ariaLabel = `${data.title}: grains in motion; h lists the keys`;
+    this.canvas = element("canvas", holder, { className: "grains", role: "img" });
     const head = element("div", holder, { className: "head" });
-    element("strong", head, {}, data.title);
+    element(holder.tagName === "MAIN" ? "h1" : "strong", head, { className: "title" }, data.title);  // a report has its own heading
     element("div", head, { className: "about" }, this.about());
-    this.chosen = element("div", head, { className: "chosen", hidden: true });
+    this.chosen = element("div", head, { className: "chosen", role: "status" });
     this.scale = element("div", holder, { className: "scale" });
-    this.profile = element("canvas", holder, { className: "profile", hidden: !data.flow });
-    this.axes = element("canvas", holder, { className: "axes" });
-    this.help = element("table", holder, { className: "help", hidden: true });
-    for (const [key, doc] of HELP) element("tr", this.help, {}, element("td", null, {}, key), element("td", null, {}, doc));
+    this.profile = element("canvas", holder, { className: "profile", role: "img", ariaLabel: "velocity of the water over height", hidden: !data.flow });
+    this.axes = element("canvas", holder, { className: "axes", role: "img", ariaLabel: "directions of x, y, z and of gravity, g" });
+    this.help = element("div", holder, { className: "help", role: "group", ariaLabel: "keys and mouse", tabIndex: 0, hidden: true });
+    const listed = element("table", this.help);
+    for (const [key, doc] of HELP) element("tr", listed, {}, element("th", null, { scope: "row" }, key), element("td", null, {}, doc));
     const bar = element("div", holder, { className: "bar" });
     const button = (text, title, act) => element("button", bar, { type: "button", title, onclick: act }, text);
     this.play = button("", "play, pause (space)", () => this.toggle());
-    this.play.ariaLabel = "play, pause";
     this.slider = element("input", bar, { type: "range", min: 0, max: Math.max(this.frames - 1, 1), step: "any", value: 0, ariaLabel: "frame", oninput: () => this.seek(+this.slider.value) });
-    this.clock = element("output", bar, { className: "clock" });
-    this.speed = element("select", bar, { title: "speed of the film", onchange: () => { this.rate = +this.speed.value; } });
-    this.colours = element("select", bar, { title: "colour of the grains (c)", onchange: () => this.colourBy(this.colours.value) });
+    this.clock = element("output", bar, { className: "clock", ariaLive: "off" });  // a moving time is not read aloud
+    this.speed = element("select", bar, { title: "speed of the film", ariaLabel: "speed of the film", onchange: () => { this.rate = +this.speed.value; } });
+    this.colours = element("select", bar, { title: "colour of the grains (c)", ariaLabel: "colour of the grains", onchange: () => this.colourBy(this.colours.value) });
     for (const one of data.colourings) element("option", this.colours, { value: one.word }, one.word);
     for (const name of Object.keys(VIEWS)) button(name, `${name} view`, () => this.look(name));
-    button("?", "keys and mouse (h)", () => { this.help.hidden = !this.help.hidden; });
-    this.hands();
+    this.asked = button("?", "keys and mouse (h)", () => this.showHelp(this.help.hidden));
+    this.asked.ariaLabel = "keys and mouse";
+    this.pause(); this.showHelp(false);
+    hands(this);
   }
 
   about() {
@@ -112,12 +109,19 @@ class Viewer {
 
   toggle() { this.playing ? this.pause() : this.begin(); }
 
-  pause() { this.playing = false; this.play.className = ""; }
+  pause() { this.playing = false; this.playShows("play", "polite"); }
+
+  playShows(does, live) {  // what the button does next; the numbers of a grain are read aloud only while they rest
+    this.play.className = this.playing ? "playing" : ""; this.play.ariaLabel = does;
+    this.chosen.ariaLive = live;
+  }
+
+  showHelp(shown) { this.help.hidden = !shown; this.asked.ariaExpanded = shown; }
 
   begin() {
     if (this.frames < 2) return;
     if (this.time >= this.data.t[this.frames - 1]) this.time = this.data.t[0];
-    this.playing = true; this.play.className = "playing"; this.before = null;
+    this.playing = true; this.before = null; this.playShows("pause", "off");
     const tick = (now) => {
       if (!this.playing) return;
       if (this.before !== null) this.time += this.rate * Math.min(now - this.before, 250) / 1000;
@@ -292,14 +296,14 @@ class Viewer {
   words(k, share, nearest, scene) {
     const { data } = this;
     this.slider.value = k + share;
-    this.clock.textContent = `t = ${this.time.toFixed(this.digits ??= Math.min(Math.max(0, Math.ceil(-Math.log10((data.t[data.t.length - 1] - data.t[0]) / data.t.length || 1) - 0.1) + 1), 6))} s`;
+    this.clock.textContent = this.slider.ariaValueText = `t = ${this.time.toFixed(this.digits ??= Math.min(Math.max(0, Math.ceil(-Math.log10((data.t[data.t.length - 1] - data.t[0]) / data.t.length || 1) - 0.1) + 1), 6))} s`;
     if (data.flow) {
       const n = data.flow.z.length, row = data.arrays.u.shape[0] > 1 ? nearest : 0;
       drawProfile(this.profile, data.flow.z, this.arrays.u.subarray(row * n, (row + 1) * n), this.fastest, this.surface(nearest));
     }
     drawAxes(this.axes, this.camera, data.scenes[scene].gravity);
-    this.chosen.hidden = this.picked < 0;
-    if (this.picked >= 0) {
+    if (this.picked < 0) this.chosen.textContent = "";
+    else {
       const at = this.placeOf(this.picked), next = Math.min(k + 1, this.frames - 1), before = Math.max(next - 1, 0);
       const speed = next > before ? Math.hypot(...minus(this.centreOf(this.picked, next), this.centreOf(this.picked, before))) / (data.t[next] - data.t[before]) : 0;
       const id = this.arrays.id ? this.arrays.id[this.picked] : this.picked;
@@ -315,6 +319,7 @@ class Viewer {
     const one = this.data.colourings[this.colouring];
     this.painter.colours(one.colours);
     drawScale(this.scale, one);
+    this.canvas.ariaLabel = `picture of the grains, coloured by ${one.label}: ${this.about()}`;
     this.changed();
   }
 
@@ -352,6 +357,25 @@ class Viewer {
     this.changed();
   }
 
+  choose(step) {  // the next grain that is there, or the one before
+    const n = this.grains, from = this.picked < 0 ? (step > 0 ? -1 : n) : this.picked;
+    for (let k = 1, g; k <= n; k++) if (this.radii[g = (((from + k * step) % n) + n) % n]) { this.picked = g; break; }
+    this.changed();
+  }
+
+  turn(across, up) {
+    this.camera.azimuth += across;
+    this.camera.elevation = Math.min(Math.max(this.camera.elevation + up, -1.55), Math.PI / 2 - 1e-4);
+    this.changed();
+  }
+
+  shift(across, up) {  // the place looked at, by as many metres
+    const [right, above] = this.camera.axes;
+    this.following = false;
+    this.camera.target = plus(plus(this.camera.target, right, across), above, up);
+    this.changed();
+  }
+
   save() {
     this.draw();
     this.canvas.toBlob((blob) => {
@@ -362,57 +386,4 @@ class Viewer {
   }
 
   faster(step) { this.speed.selectedIndex = Math.min(Math.max(this.speed.selectedIndex + step, 0), this.speed.length - 1); this.rate = +this.speed.value; }
-
-  hands() {
-    const { canvas, holder } = this;
-    const place = (event) => { const box = canvas.getBoundingClientRect(); return [2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height]; };
-    let last = null, moved = 0;
-    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); last = [event.clientX, event.clientY]; moved = 0; holder.focus({ preventScroll: true }); });
-    canvas.addEventListener("pointermove", (event) => {
-      if (!last) return;
-      const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]], metre = 2 * this.camera.half / canvas.clientHeight;
-      last = [event.clientX, event.clientY]; moved += Math.abs(dx) + Math.abs(dy);
-      if (moved < 4) return;
-      if (event.shiftKey || event.buttons === 2) {
-        const [right, up] = this.camera.axes;
-        this.following = false;
-        this.camera.target = plus(plus(this.camera.target, right, -dx * metre), up, dy * metre);
-      } else {
-        this.camera.azimuth -= 0.006 * dx;
-        this.camera.elevation = Math.min(Math.max(this.camera.elevation + 0.006 * dy, -1.55), Math.PI / 2 - 1e-4);
-      }
-      this.changed();
-    });
-    canvas.addEventListener("pointerup", (event) => { last = null; if (moved < 4 && event.button === 0) this.pick(...place(event)); });
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("wheel", (event) => { event.preventDefault(); this.zoom(Math.exp(0.0015 * event.deltaY), ...place(event)); }, { passive: false });
-    const keys = {
-      " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.seek(0), End: () => this.seek(this.frames - 1),
-      ArrowUp: () => this.faster(1), ArrowDown: () => this.faster(-1), "+": () => this.zoom(0.8), "=": () => this.zoom(0.8), "-": () => this.zoom(1.25),
-      1: () => this.look("oblique"), 2: () => this.look("side"), 3: () => this.look("top"), o: () => { this.camera.flat = !this.camera.flat; },
-      c: () => this.colourBy(this.data.colourings[(this.colouring + 1) % this.data.colourings.length].word), f: () => { this.following = !this.following && this.picked >= 0; },
-      Escape: () => { this.picked = -1; this.following = false; this.help.hidden = true; }, b: () => { this.fixedShown = !this.fixedShown; }, w: () => { this.wallsShown = !this.wallsShown; }, a: () => { this.arrowsShown = !this.arrowsShown; },
-      p: () => this.save(), h: () => { this.help.hidden = !this.help.hidden; }, "?": () => { this.help.hidden = !this.help.hidden; },
-    };
-    holder.addEventListener("keydown", (event) => {
-      if (!(event.key in keys) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT" || !this.arrays) return;
-      event.preventDefault();
-      keys[event.key]();
-      this.changed();
-    });
-  }
 }
-
-const viewers = [];
-for (const holder of document.querySelectorAll("[data-run]")) {
-  const run = holder.dataset.run, text = (kind) => document.getElementById(`ryusa-${kind}-${run}`).textContent;
-  try {
-    const viewer = new Viewer(holder, JSON.parse(text("data")), text("arrays"));
-    viewer.ready.catch((error) => { element("p", holder, { className: "fault" }, `The run cannot be shown: ${error.message}`); throw error; });
-    viewers.push(viewer);
-  } catch (error) {
-    element("p", holder, { className: "fault" }, error.message);
-  }
-}
-viewers[0]?.holder.focus({ preventScroll: true });
-window.ryusaViewers = viewers;

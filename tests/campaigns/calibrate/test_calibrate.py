@@ -92,6 +92,11 @@ def test_restitution_is_found_and_friction_is_not_determined_by_a_central_impact
 
 
 @pytest.mark.full
+def test_axe_finds_no_fault_on_the_page(done, faults_of):
+    assert faults_of(done[1] / "calibration.html") == []
+
+
+@pytest.mark.full
 def test_a_second_method_gives_the_same_posterior(done, study, tmp_path):
     """The likelihood of runs themselves on a grid of restitution, without an emulator."""
     grid = np.linspace(0.6, 0.8, 21)

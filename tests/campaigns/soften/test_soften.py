@@ -69,6 +69,10 @@ def test_table_picture_and_page_are_written(done):
     assert "saltation jump_length of hop" in page
 
 
+def test_axe_finds_no_fault_on_the_page(done, faults_of):
+    assert faults_of(done[1] / "soften.html") == []
+
+
 def test_finished_runs_are_opened_for_another_number_and_tolerance(done, hop):
     first, out = done
     assert first.exit_code in {0, 3}

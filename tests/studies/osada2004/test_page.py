@@ -101,6 +101,11 @@ def test_the_page_is_complete_self_contained_and_escaped(every_word):
     assert len(reader.ids) == len(set(reader.ids))
 
 
+def test_axe_finds_no_fault_on_the_page(every_word, faults_of):
+    write(every_word)
+    assert faults_of(every_word.folder / "ledger.html") == []
+
+
 def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_word):
     write(every_word)
     reader, _ = read(every_word)

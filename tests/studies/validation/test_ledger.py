@@ -198,6 +198,11 @@ def test_the_page_holds_its_pictures_and_escapes_words(checks, tmp_path):
     assert table(kept).splitlines()[2].startswith("| one/square: Square")
 
 
+def test_axe_finds_no_fault_on_the_page(checks, tmp_path, faults_of):
+    checks["one"] = Fake()
+    assert faults_of(write(make(checks, None, Level.STANDARD, tmp_path))[0]) == []
+
+
 def test_the_page_of_the_standard_level_says_how_often_each_comparison_was_run(checks, tmp_path):
     checks["one"] = Fake()
     (page, *_) = write(make(checks, None, Level.STANDARD, tmp_path))
