@@ -13,6 +13,7 @@ from tests.accessible import MISSING, Fault, chromium, chromium_path, faults_of_
 
 KINDS = (
     "index.html",
+    "ja/index.html",
     "heap-notebook.html",  # pictures and a viewer
     "theory.html",  # formulae
     "gallery.html",
