@@ -372,7 +372,7 @@ def told_at(row, u_free):
     )
     return RowTold(
         np.zeros((stations, 6, n)), np.zeros((stations, n)), np.full((stations, n), u_free),
-        np.zeros((segments, n)), np.zeros(stations), *np.zeros((3, segments, n)),
+        np.zeros((segments, n)), np.zeros(stations), *np.zeros((4, segments, n)),
     )  # fmt: skip
 
 

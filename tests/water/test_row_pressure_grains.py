@@ -8,15 +8,17 @@ import pytest
 from tests.water.test_row_grains import WALLS, D, G, advance_together, cloud, column_of, lattice
 
 from ryusa.laws.families import BedKind, Fluctuations, Hindrance, Lift, Mixing, Pressure
-from ryusa.model.fluid import DRAG, N_IMPULSE, W
+from ryusa.model.fluid import A_X, DRAG, N_IMPULSE, W
 from ryusa.model.row import ColumnRow
 from ryusa.model.row_energy import RowTerm, row_imbalance
 from ryusa.water import momentum_balance as m
+from ryusa.water import row_grains
 from ryusa.water.row_coupling import RowCoupling
 from ryusa.water.row_grain_sums import amounts_given
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_layout import RowWater
 from ryusa.water.row_pressure import divide_among_faces, find_rises
+from ryusa.water.row_pressure_told import accelerate_with_grains
 from ryusa.water.row_projection import FINE, divergence
 
 FULL = {"pressure": Pressure.FULL}
@@ -68,6 +70,68 @@ def test_without_the_mobility_of_the_grains_their_pressure_grows(monkeypatch):
     assert np.abs(settling(1048.0, 40, 2, pitch=1.001 * D)[0]).max() < 1.3
     monkeypatch.setattr(GrainsInRow, "_yields", 0.0)
     assert np.abs(settling(1048.0, 150, 2, pitch=1.001 * D)[0][-10:]).min() > 10.0
+
+
+def driven(c_m=2.0, pitch=1.05 * D, tilt=0.05, density=2650.0):
+    """Accelerations told to grains at rest in a period whose water alone is driven, and the closed form.
+
+    Without drag, (1 - phi) U' = (1 - phi) g_x - phi c_m (U' - v'), (sigma/rho + c_m) v' = c_m U'.
+    """
+    length = 16 * pitch
+    at = lattice(length, 14 * pitch, pitch, low=8.0 * pitch)
+    made, first = cloud(
+        at=at, length=length, tilt=0.0, density=density, hindrance=Hindrance.DI_FELICE, c_m=c_m
+    )
+    made = replace(made, world_low=(-math.inf,) * 3)
+    c = column_of(length * D, tilt, dz=pitch, n=40, depth=34 * pitch, mixing=Mixing.LAMINAR)
+    row = ColumnRow(c, length / 2, np.zeros(2), G, **FULL)
+    start = GrainsInRow.begin(made, row, at).at_rest(np.full(2, 34 * pitch))
+    within = np.abs(at[:, 2] - 15 * pitch) < 2 * pitch
+    told = [
+        float(grains.sampled[within, A_X].mean())
+        for grains, *_ in advance_together((made, first), row, start, 12, longest=2)
+    ]
+    phi, resists = math.pi / 6.0 * (D / pitch) ** 2, c_m * density / (density + 1000.0 * c_m)
+    return np.array(told), (1.0 - phi) * G * math.sin(tilt) / (1.0 - phi + phi * resists)
+
+
+def test_water_that_accelerates_along_x_takes_added_mass_along(monkeypatch):
+    """Where c_m phi > 1 - phi too, as in grains packed in rows; told as found, the accelerations grow."""
+    for told, closed in (driven(), driven(0.5, 1.3 * D)):
+        assert told[5:] == pytest.approx(closed, rel=3e-3)
+    monkeypatch.setattr(row_grains, "accelerate_with_grains", lambda *_: None)
+    found, closed = driven()
+    assert (np.diff(np.abs(found - closed)[2:]) > 0.0).all()
+
+
+def stirred(intervals=60):
+    """Pushes upwards on the added mass of grains in water that was stirred at first."""
+    n, pitch = 24, 1.05 * D
+    length = 48 * pitch
+    at = lattice(length, 14 * pitch, pitch, low=8.0 * pitch)
+    made, first = cloud(at=at, length=length, tilt=0.0, hindrance=Hindrance.DI_FELICE, c_m=2.0)
+    made = replace(made, world_low=(-math.inf,) * 3)
+    c = column_of(length * D, 0.0, dz=pitch, n=40, depth=34 * pitch, mixing=Mixing.LAMINAR)
+    row = ColumnRow(c, length / n, np.zeros(n), G, **FULL)
+    start = GrainsInRow.begin(made, row, at).at_rest(np.full(n, 34 * pitch))
+    start = replace(start, u=1e-3 * np.random.default_rng(1).normal(size=start.u.shape))
+    return np.array([
+        one[0]._met.moves.copy() for one in advance_together((made, first), row, start, intervals, longest=2)
+    ])  # fmt: skip
+
+
+def test_what_grains_are_told_upwards_does_not_swing_from_one_interval_to_the_next(monkeypatch):
+    moves = stirred()
+    settled = np.abs(moves[-1]).max()
+    assert np.abs(np.diff(moves[20:], axis=0)).max() < 0.01 * settled
+    monkeypatch.setattr(row_grains, "accelerate_with_grains", as_found)
+    assert np.abs(np.diff(stirred()[20:], axis=0)).max() > 0.1 * settled
+
+
+def as_found(*given):
+    """`accelerate_with_grains` with no added mass that goes along."""
+    none = np.zeros_like(given[5])
+    accelerate_with_grains(*given[:5], none, *given[6:])
 
 
 def shaken(tilt=0.05):

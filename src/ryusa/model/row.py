@@ -374,6 +374,9 @@ class RowGrainState(ByShape):
     force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n_all, n).
     u : speed of the water at the stations as free grains meet it [m/s], shape (n_station, n).
     eddies : present eddies of the grains; None without fluctuations.
+    du_dt, moves : acceleration of the water along x at the stations [m/s2], shape (n_station, n), and push
+        upwards on added mass by that upwards [N/m3], shape (n_all, n), as they were told; None where the
+        pressure is hydrostatic.
     """
 
     x: Annotated[Floats, "grain", 3]
@@ -381,6 +384,8 @@ class RowGrainState(ByShape):
     force_z: Annotated[Floats, "filled", "cell"]
     u: Annotated[Floats, "station", "cell"]
     eddies: Eddies | None = None
+    du_dt: Annotated[Floats, "station", "cell"] | None = None
+    moves: Annotated[Floats, "filled", "cell"] | None = None
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,7 +15,7 @@ from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import DENSEST
 from ryusa.water.drive import DISCHARGE
 from ryusa.water.eddies import turbulence_of_cells
-from ryusa.water.exchange import FOUR, Ints
+from ryusa.water.exchange import FOUR
 from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
 from ryusa.water.row_grain_sums import MetByGrains
@@ -72,6 +72,7 @@ class RowTold(NamedTuple):
     wet: Floats  # share of the cells of the segments below the surface [-], shape (n_segment, n)
     phi: Floats  # as in StationForces
     force_z: Floats
+    moves: Floats  # push upwards on added mass, by water that accelerates [N/m3], shape (n_segment, n)
 
 
 @kernel
@@ -349,39 +350,6 @@ def table_of(shape: RowShape, told: RowTold, turbulence: Floats) -> Floats:
             table[i, k, 1], table[i, k, 3] = told.w[i, k], told.phi[i, k]
             table[i, k, 6] = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
     return table
-
-
-@kernel
-def press_grains(
-    p: ColumnParameters, shape: RowShape, c_m: float, solid: Floats, told: RowTold, rise: Floats,
-    within: Floats, top: Ints, table: Floats,
-) -> None:  # fmt: skip
-    """Tell the grains the pressure in `table` of `table_of`, instead of the force that balances drag upwards.
-
-    Parameters
-    ----------
-    c_m : coefficient of the added mass [-].
-    solid : concentration of a porous solid [-], (n_segment, n); how water in it accelerates is not told.
-    rise, within : rise of P along x at the stations, and upwards in the cells, of `find_rises` [m/s2].
-    top : cells of the surface.
-
-    Notes
-    -----
-    Where the water rests, the force upwards is what `table` had: the pressure bears the drag. Water that
-    accelerates with dW/dt = - dP/dz - N/(rho eps) takes the added mass along.
-    """
-    for i in range(len(table)):
-        west, east, first = shape.west[i], shape.east[i], shape.first[i]
-        for k in range(p.n):
-            push = -0.5 * p.rho_w * (rise[west, k] + rise[east, k])
-            table[i, k, PUSH], table[i, k, MOVES] = push, 0.0
-            table[i, k, 5] += push
-            if not (first <= k <= top[i] and top[i] > first):
-                continue
-            lift = -p.rho_w * within[i, k] * (2.0 if k == first else 1.0)  # whose bottom has no face
-            bears = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
-            moves = 0.0 if solid[i, k] > 0.0 else c_m * (lift - bears)
-            table[i, k, 6], table[i, k, MOVES] = lift + moves, moves
 
 
 @kernel

@@ -37,7 +37,6 @@ from ryusa.water.row_exchange import (
     leave_dry_ends,
     means_at_grains,
     meet_within_step,
-    press_grains,
     rates_at_stations,
     split_budgets,
     table_of,
@@ -49,6 +48,7 @@ from ryusa.water.row_layout import RowEnds, RowWater
 from ryusa.water.row_nappe import closed, hang, open_state, open_values
 from ryusa.water.row_pressure import find_rises
 from ryusa.water.row_pressure_grains import set_grains
+from ryusa.water.row_pressure_told import accelerate_with_grains, press_grains
 from ryusa.water.row_station import largest_residual
 from ryusa.water.row_sums import (
     N_ROW_SUM,
@@ -64,6 +64,7 @@ from ryusa.water.slice_sums import (
     DRAG_NOW,
     N_SUM_FIXED,
     RATE,
+    ROW_DU_DT,
     SOLID,
 )
 
@@ -147,7 +148,7 @@ class GrainsInRow:
         )
         told = RowTold(
             np.zeros((stations, 6, column.n)), np.zeros((stations, column.n)), np.zeros((stations, column.n)),
-            np.zeros((segments, column.n)), np.zeros(stations), *np.zeros((3, segments, column.n)),
+            np.zeros((segments, column.n)), np.zeros(stations), *np.zeros((4, segments, column.n)),
         )  # fmt: skip
         made = GrainsInRow(
             scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, 0.0, np.array(x), arrays,
@@ -181,6 +182,9 @@ class GrainsInRow:
         told = grains.told
         for into, one in ((told.w, found.w), (told.force_z, found.force_z), (told.u_free, found.u)):
             into[:] = open_values(row, one)
+        if found.du_dt is not None and found.moves is not None:
+            told.stations[:, ROW_DU_DT] = open_values(row, found.du_dt)
+            told.moves[:] = open_values(row, found.moves)
         grains._sample(open_state(row, state))  # which notes what each grain met, for what it gives
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
@@ -189,9 +193,11 @@ class GrainsInRow:
         """All that `resume` needs, beside the water and the water at the grains."""
         x, told = self.x.copy(), self.told
         w, force_z, u = (np.array(self._closed(one)) for one in (told.w, told.force_z, told.u_free))
-        for one in (x, w, force_z, u):
+        own = () if self.row.hydrostatic else (told.stations[:, ROW_DU_DT], told.moves)
+        accelerate = [np.array(self._closed(one)) for one in own]
+        for one in (x, w, force_z, u, *accelerate):
             one.flags.writeable = False
-        return RowGrainState(x, w, force_z, u, self.eddies)
+        return RowGrainState(x, w, force_z, u, self.eddies, *accelerate)
 
     def follow(self, ends: RowEnds) -> None:
         """Let other discharges and levels act at the ends from the next exchange on."""
@@ -210,7 +216,7 @@ class GrainsInRow:
         other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
         other.told.u_free[:] = self.told.u_free
         if not self.row.hydrostatic:  # with what lands behind aerated sills
-            other.told.stations[:] = self.told.stations
+            other.told.stations[:], other.told.moves[:] = self.told.stations, self.told.moves
         other.worst, other.eddies = self.worst, self.eddies
         other._sample(open_state(self.row, state))
         return other
@@ -344,7 +350,13 @@ class GrainsInRow:
         self.fastest = max(water, float(rates.max()), self.fastest_grain)
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, row.column.seed, dt, self.sampled[:, SHEAR])
+        before = told.stations[:, ROW_DU_DT].copy()
         self._tell(now, sums, through, dt)
+        if pressure is not None:
+            accelerate_with_grains(
+                shape, 1.0 / (self._area * p.dz), float(self.scene.water.c_m), p.rho_w, self._porous(), sums,
+                before, pressure.within, pressure.top, told,
+            )  # fmt: skip
         if self.fastest * self.scene.dt > STIFF:  # the next interval is a step
             meet_within_step(shape, self.scene.dt, rates, sums, told)
         self._sample(now)
@@ -368,6 +380,9 @@ class GrainsInRow:
             arrays.p, self._area, arrays.shape, arrays.ends, dt, float(driver), sums, through, water,
             np.zeros_like(told.u), np.zeros(len(told.phi)), np.array(state.budgets), told, arrays.nappe,
         )  # fmt: skip
+        if (own := arrays.pressure) is not None and state.pressure is not None:
+            own.p[:] = state.pressure
+            find_rises(arrays.p, arrays.shape, np.array(state.wet), own)
 
     def _sample(self, state: RowState) -> None:
         """Write the water at every grain, of a state of the opened row."""
@@ -377,9 +392,7 @@ class GrainsInRow:
             turbulence = turbulence_at_stations(p, shape, told.phi, np.array(state.edges))
         self.sampled, table = np.empty((len(self._z), N_SAMPLED)), table_of(shape, told, turbulence)
         if (own := self._arrays.pressure) is not None and state.pressure is not None:
-            own.p[:], c_m = state.pressure, float(self.scene.water.c_m)
-            find_rises(p, shape, np.array(state.wet), own)
-            press_grains(p, shape, c_m, self._porous(), told, own.push, own.within, own.top, table)
+            press_grains(p, shape, told, own.push, own.within, own.top, table)
 
         def tell_some(begin: int, end: int) -> None:
             some, these = slice(begin, end), self.eddies
