@@ -217,6 +217,7 @@ release: ## everything that a release needs, from a clean clone in build/release
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
+	@$(BIN)/uv pip compile --quiet --python-version 3.11.0 --group test --group docs --constraint constraints.txt pyproject.toml > /dev/null || { echo "constraints.txt does not serve the oldest Python"; exit 1; }
 
 clean: ## remove the environment, caches and the runs of demo, paper-quick and validate-quick
 	rm -rf $(VENV) $(RUN) $(SHOW) $(LEDGER) $(CHECKED) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ryusa.study.cost import code_in_words
 from ryusa.study.ledger_file import read_ledger
 
 FEW = 6  # parts that are named
@@ -36,7 +37,7 @@ class Made:
 
     def __str__(self) -> str:
         """In words."""
-        code = f"commit {self.commit[:9]}" if self.commit else "commit not kept"
+        code = f"commit {code_in_words(self.commit)}" if self.commit else "commit not kept"
         return f"{self.day}, {code}" + (f" ({self.parts})" if self.parts else "")
 
 
@@ -84,7 +85,7 @@ def page_lines() -> str:
 
 def since(commit: str) -> str:
     """How many commits changed src/ since one, in words."""
-    words = ["git", "-C", str(ROOT), "rev-list", "--count", f"{commit}..HEAD", "--", "src"]
+    words = ["git", "-C", str(ROOT), "rev-list", "--count", f"{commit.removesuffix('+')}..HEAD", "--", "src"]
     done = subprocess.run(words, check=False, capture_output=True, text=True)
     return f"{done.stdout.strip()} commits in src/ since" if done.returncode == 0 else "not in this history"
 

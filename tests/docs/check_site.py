@@ -28,8 +28,8 @@ FILE_FOR_WORDS = re.compile(r'<img[^>]*\salt="([^"]*\.(?:png|svg|webp|gif))"')
 def pictures_without_words(site: Path) -> list[str]:
     """Pages with a picture that is called as its file."""
     return [
-        f"{page.name}: a picture is called {found}"
-        for page in sorted(site.glob("*.html"))
+        f"{page.relative_to(site)}: a picture is called {found}"
+        for page in sorted(site.rglob("*.html"))
         for found in FILE_FOR_WORDS.findall(page.read_text(encoding="utf-8"))
     ]
 

@@ -120,10 +120,11 @@ def test_the_page_on_measuring_names_every_measure() -> None:
 
 
 def test_a_picture_that_is_called_as_its_file_is_found(tmp_path: Path) -> None:
-    (tmp_path / "heap.html").write_text(
+    (tmp_path / "ja").mkdir()
+    (tmp_path / "ja" / "heap.html").write_text(
         '<img src="a.png" alt="a heap"><img alt="_images/09af.png" src="b.png">'
     )
-    assert pictures_without_words(tmp_path) == ["heap.html: a picture is called _images/09af.png"]
+    assert pictures_without_words(tmp_path) == ["ja/heap.html: a picture is called _images/09af.png"]
 
 
 def test_of_faults_only_those_of_the_theme_are_let_through() -> None:

@@ -153,6 +153,11 @@ def test_a_button_is_pressed_by_the_space_bar_and_plays_nothing(viewer):
     )
     viewer.keyboard.press("Escape")
     assert (now(viewer, "help.hidden"), now(viewer, "asked.ariaExpanded")) == (True, "false")
+    viewer.keyboard.press("h")
+    viewer.evaluate("ryusaViewers[0].help.focus()")
+    viewer.keyboard.press("Escape")
+    viewer.keyboard.press("Space")
+    assert now(viewer, "playing")
 
 
 def test_keys_turn_shift_and_choose_as_the_mouse_does(viewer):

@@ -89,7 +89,7 @@ def test_a_run_taken_up_anew_and_one_on_threads_have_the_bits_of_one():
         for name in ("u", "volume", "content", "w", "pressure", "energy", "budgets"):
             assert np.array_equal(getattr(ends[0], name), getattr(end, name)), name
         assert np.array_equal(grains.sampled, other.sampled)
-        for name in ("w", "force_z", "u"):
+        for name in ("w", "force_z", "u", "du_dt", "moves"):
             assert np.array_equal(getattr(grains.snapshot(), name), getattr(other.snapshot(), name)), name
 
 

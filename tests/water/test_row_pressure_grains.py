@@ -128,10 +128,18 @@ def test_what_grains_are_told_upwards_does_not_swing_from_one_interval_to_the_ne
     assert np.abs(np.diff(stirred()[20:], axis=0)).max() > 0.1 * settled
 
 
-def as_found(*given):
+def test_grains_that_stay_are_told_the_same_when_others_enter_or_leave():
+    made, row, start, v, _ = shaken()
+    *_, (grains, now, _, _, _) = advance_together(made, row, start, 6, v)
+    other = grains.among(grains.x, now)
+    assert np.abs(grains._met.moves).max() > 1.0
+    assert np.array_equal(other._met.moves, grains._met.moves)
+    assert np.array_equal(other.sampled, grains.sampled)
+
+
+def as_found(shape, per_cell, c_m, rho_w, solid, sums, *others):
     """`accelerate_with_grains` with no added mass that goes along."""
-    none = np.zeros_like(given[5])
-    accelerate_with_grains(*given[:5], none, *given[6:])
+    accelerate_with_grains(shape, per_cell, c_m, rho_w, solid, 0.0 * sums, *others)
 
 
 def shaken(tilt=0.05):

@@ -374,9 +374,8 @@ class RowGrainState(ByShape):
     force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n_all, n).
     u : speed of the water at the stations as free grains meet it [m/s], shape (n_station, n).
     eddies : present eddies of the grains; None without fluctuations.
-    du_dt, moves : acceleration of the water along x at the stations [m/s2], shape (n_station, n), and push
-        upwards on added mass by that upwards [N/m3], shape (n_all, n), as they were told; None where the
-        pressure is hydrostatic.
+    du_dt, moves : acceleration along x [m/s2], (n_station, n), and push upwards on added mass [N/m3],
+        (n_all, n), as they were told; None where the pressure is hydrostatic.
     """
 
     x: Annotated[Floats, "grain", 3]
@@ -413,7 +412,11 @@ class RowCouplingState(ByShape):
 
     def fault(self, touched: int) -> str:
         """Why this is no state of a row that so many grains touch; "" where it is one."""
-        water = self.water
+        water, grains = self.water, self.grains
         if min(water.volume.min(), water.content.min(), water.wet.min()) < 0.0:
             return "a negative amount of water"
-        return "a row of water without its grains" if touched and self.grains is None else ""
+        if water.pressure is not None and grains is not None and grains.du_dt is None:
+            return (
+                "a row without the accelerations that its grains were told, as development versions kept it"
+            )
+        return "a row of water without its grains" if touched and grains is None else ""

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ryusa.study.cost import code_in_words
 from ryusa.study.html import embedded, is_wide, template, write_page
 from ryusa.study.interval import short
 from ryusa.study.ledger import Ledger
@@ -162,7 +163,7 @@ def made_by(plain: Mapping[str, Any]) -> str:
 
 
 def _made_by(made: Mapping[str, Any]) -> str:
-    code = f"commit {made['commit'][:12]}" if made.get("commit") else f"ryusa {made['ryusa']}"
+    code = f"commit {code_in_words(made['commit'])}" if made.get("commit") else f"ryusa {made['ryusa']}"
     return f"{made['made'][:10]}, {code}, {made['runs_made'] + made['runs_opened']} runs"
 
 

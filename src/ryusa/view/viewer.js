@@ -116,7 +116,11 @@ class Viewer {
     this.chosen.ariaLive = live;
   }
 
-  showHelp(shown) { this.help.hidden = !shown; this.asked.ariaExpanded = shown; }
+  showHelp(shown) {
+    const within = this.help.contains(document.activeElement);  // what is hidden hears no keys
+    this.help.hidden = !shown; this.asked.ariaExpanded = shown;
+    if (within && !shown) this.holder.focus({ preventScroll: true });
+  }
 
   begin() {
     if (this.frames < 2) return;
@@ -311,7 +315,7 @@ class Viewer {
     }
   }
 
-  // ------------------------------------------------------------------------------------------------------ hands
+  // -------------------------------------------------------------------------------- what keys and mouse ask for
 
   colourBy(word) {
     this.colouring = this.data.colourings.findIndex((one) => one.word === word);

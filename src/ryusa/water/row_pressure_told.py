@@ -1,5 +1,6 @@
 """What grains are told in a row with a pressure of its own: its push, and accelerations of the water."""
 
+from ryusa.model.row import INFLOW, OPEN
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import DENSEST
@@ -20,7 +21,7 @@ def accelerate_with_grains(
     ----------
     per_cell : one over the volume of a cell [1/m3].
     c_m, rho_w : coefficient of the added mass [-], and density of the water [kg/m3].
-    solid : concentration of a porous solid [-], (n_segment, n); how water in it accelerates is not told.
+    solid : concentration of a porous solid [-], (n_segment, n); in it no acceleration upwards is told.
     sums : of `sum_grains_in_row`, for the concentration of free grains.
     before : acceleration along x that they were told last [m/s2], shape (n_station, n).
     within, top : as of `press_grains`.
@@ -32,16 +33,23 @@ def accelerate_with_grains(
     The balance of the water over an interval has what the grains gave for the acceleration told before. For
     the one told now they will give c_m rho phi A, so that A = A_found - g (A - A_before) with
     g = c_m phi/(1 - phi), which holds for grains at rest; those that follow give less, and A comes closer
-    with each interval. Telling A_found itself, each is undone by the next times g, and where
-    phi > 1/(1 + c_m) they grow.
+    with each interval. If grains were told A_found itself, each interval would undo the last one g times
+    over, and where phi > 1/(1 + c_m) this grows. Upwards A_found is - dP/dz - N/(rho (1 - phi)).
     """
     for j in range(len(shape.left)):
         a, b = shape.left[j], shape.right[j]
+        if shape.kind[j] != OPEN:
+            continue
         for k in range(before.shape[1]):
-            free = 0.5 * per_cell * (sums[SOLID, a, k] + sums[SOLID, b, k])
-            water = max(1.0 - 0.5 * (told.phi[a, k] + told.phi[b, k]), 1.0 - DENSEST)
-            g = c_m * free / water
+            wet_a, wet_b = told.wet[a, k], told.wet[b, k]
+            free = per_cell * (sums[SOLID, a, k] * wet_a + sums[SOLID, b, k] * wet_b)
+            water = (1.0 - told.phi[a, k]) * wet_a + (1.0 - told.phi[b, k]) * wet_b
+            water = max(water, (1.0 - DENSEST) * (wet_a + wet_b))
+            g = c_m * free / water if water > 0.0 else 0.0
             told.stations[j, ROW_DU_DT, k] = (told.stations[j, ROW_DU_DT, k] + g * before[j, k]) / (1.0 + g)
+    for j in range(len(shape.left)):
+        if shape.kind[j] == INFLOW:
+            told.stations[j, ROW_DU_DT] = told.stations[j + 1, ROW_DU_DT]
     for i in range(len(shape.bottom)):
         first = shape.first[i]
         for k in range(before.shape[1]):
@@ -74,8 +82,7 @@ def press_grains(
 
     Notes
     -----
-    Where the water rests, the force upwards is what `table` had: the pressure bears the drag. Water that
-    accelerates with dW/dt = - dP/dz - N/(rho eps) takes the added mass along.
+    Where the water rests, the force upwards is what `table` had: the pressure bears the drag.
     """
     for i in range(len(table)):
         west, east, first = shape.west[i], shape.east[i], shape.first[i]
