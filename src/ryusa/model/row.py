@@ -416,7 +416,5 @@ class RowCouplingState(ByShape):
         if min(water.volume.min(), water.content.min(), water.wet.min()) < 0.0:
             return "a negative amount of water"
         if water.pressure is not None and grains is not None and grains.du_dt is None:
-            return (
-                "a row without the accelerations that its grains were told, as development versions kept it"
-            )
+            return "a row without the accelerations that its grains were told"
         return "a row of water without its grains" if touched and grains is None else ""
