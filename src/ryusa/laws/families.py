@@ -343,7 +343,10 @@ class Mixing(Family, key="water.column.mixing_length"):
     VAN_DRIEST = (3, "van Driest", length_van_driest, "kappa z (1 - exp(-z+/26))", "van Driest 1956",
         ("kappa",), ("wall",))
     LI_SAWAMOTO = (4, "Li-Sawamoto", None, "kappa times the integral of (packed - phi)/packed",
-        "Li & Sawamoto 1995", ("kappa", "packed"))
+        "Li & Sawamoto 1995", ("kappa", "packed"), ("grains",))
+    WALL_JET = (5, "wall jet", None,
+        "that of Li & Sawamoto, above a jet along the bed at most 0.19 of its half width",
+        "Launder & Rodi 1983", ("kappa", "packed"), ("grains", "jet"))
 
 
 class SideWalls(Family, key="water.column.side_friction"):

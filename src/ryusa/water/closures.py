@@ -3,13 +3,20 @@
 import math
 
 from ryusa.laws._family import numbers
-from ryusa.laws.dispatch import mixing_length, side_friction, wall_stress
+from ryusa.laws.dispatch import (
+    length_above_jet,
+    length_through_grains,
+    mixing_length,
+    side_friction,
+    wall_stress,
+)
 from ryusa.laws.families import BedKind, Mixing
 from ryusa.laws.turbulence import (
     friction_gap_laminar,
     height_between,
     length_growth_li_sawamoto,
     length_pore_egashira,
+    length_wall_jet,
     side_wall_drag,
 )
 from ryusa.model.scene import Floats
@@ -18,7 +25,7 @@ from ryusa.water._kernel import ColumnParameters, kernel
 NO_SLIP, SMOOTH, ROUGH, MOVING = numbers(
     __name__, BedKind.NO_SLIP, BedKind.SMOOTH, BedKind.ROUGH, BedKind.MOVING
 )
-LAMINAR, LI_SAWAMOTO = int(Mixing.LAMINAR), int(Mixing.LI_SAWAMOTO)  # all others have their law
+LAMINAR = int(Mixing.LAMINAR)
 RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 
@@ -88,7 +95,8 @@ def mixing_lengths(
     """
     square[:] = 0.0
     crest, mean = 0, phi
-    if p.mixing == LI_SAWAMOTO:
+    grains = length_through_grains(p.mixing)
+    if grains:
         mean = averaged(p.dz, p.d, m, phi)
         crest = packed_below(p, m, mean)
     depth = z_surface - p.z_bed
@@ -99,7 +107,7 @@ def mixing_lengths(
         low, high = z[f - 1] - p.z_bed, z[f] - p.z_bed
         at = height_between(low, high) if walled and low > 0.0 else face
         length = 0.0
-        if p.mixing == LI_SAWAMOTO:
+        if grains:
             below, above = 0.0, 0.0
             if f > crest:
                 below = length_growth_li_sawamoto(mean[f - 1], p.phi_max, p.dz, p.kappa)
@@ -113,6 +121,48 @@ def mixing_lengths(
         share = 0.5 * (phi[f - 1] + phi[f])
         square[f] = max((1.0 - share) * length * length, pores(p, share))
     square[0] = pores(p, phi[0])
+
+
+@kernel
+def bound_by_jet(p: ColumnParameters, m: int, z: Floats, u: Floats, square: Floats) -> None:
+    """Bound the mixing length above a jet along the bed by its width; other flows keep theirs.
+
+    Parameters
+    ----------
+    p, m : the column, and its highest wet cell.
+    z, u : middles of the wet part of the cells [m], and speeds there [m/s], shape (n,).
+    square : of `mixing_lengths` [m2], overwritten at the faces above the highest speed.
+
+    Notes
+    -----
+    The bound counts by the share of the highest speed that is lost above it: nothing where the speed grows
+    up to the surface, all of it below water at rest.
+    """
+    if not length_above_jet(p.mixing):
+        return
+    at = 0
+    for k in range(1, m + 1):
+        if abs(u[k]) > abs(u[at]):
+            at = k
+    along = math.copysign(1.0, u[at])
+    highest, least = along * u[at], along * u[at]
+    for k in range(at + 1, m + 1):
+        least = min(least, along * u[k])
+    fall = highest - least
+    if not fall > 0.0:
+        return
+    half, width = highest - 0.5 * fall, z[m] - z[at]
+    for k in range(at + 1, m + 1):
+        here, below = along * u[k], along * u[k - 1]
+        if here <= half:
+            width = z[k] - z[at] - (z[k] - z[k - 1]) * (half - here) / (below - here)
+            break
+    most, part = length_wall_jet(width), min(fall / highest, 1.0)
+    for f in range(at + 1, m + 1):
+        length = math.sqrt(square[f])
+        if length > most:
+            length += part * (most - length)
+            square[f] = length * length
 
 
 @kernel

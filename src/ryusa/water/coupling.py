@@ -12,7 +12,7 @@ import numpy as np
 
 from ryusa.errors import NotANumber
 from ryusa.laws._family import numbers
-from ryusa.laws.families import BedKind, Fluctuations, Mixing, Start
+from ryusa.laws.families import BedKind, Fluctuations, Start
 from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
@@ -310,7 +310,7 @@ class Coupling(Fluid):
         """Warnings about the water, one sentence each."""
         column, densest = self.column, self.densest()
         if (
-            column.mixing is not Mixing.LI_SAWAMOTO
+            "grains" not in column.mixing.marks
             or column.bed is not BedKind.MOVING
             or densest >= column.phi_max
         ):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import GrainLost
-from ryusa.laws.families import BedKind, Mixing, Start
+from ryusa.laws.families import BedKind, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.row import EndKind
@@ -286,7 +286,7 @@ class RowCoupling(Fluid):
         if self.dry:
             return ["the row is dry: no water is left in it"]
         column, beds = self.row.column, self.densest_beds()
-        if self.grains is None or column.mixing is not Mixing.LI_SAWAMOTO or not len(beds):
+        if self.grains is None or "grains" not in column.mixing.marks or not len(beds):
             return []
         typical = float(np.median(beds))
         if not _SETTLED * column.phi_max <= typical < column.phi_max:

@@ -20,6 +20,7 @@ from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa_studies.validation import river_bar as over_bar
 from ryusa_studies.validation import river_jump as jump
 from ryusa_studies.validation import river_sill as sill
+from ryusa_studies.validation import river_wall_jet as wall_jet
 from ryusa_studies.validation.declared import declared
 
 TITLE = "Pressure along a row"
@@ -268,7 +269,15 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
     if plan.level is Level.QUICK:
         return every
-    return [*every, _alone(), *_of_both(collapse), *jump.tasks(), *sill.tasks(), *over_bar.tasks()]
+    return [
+        *every,
+        _alone(),
+        *_of_both(collapse),
+        *jump.tasks(),
+        *sill.tasks(),
+        *wall_jet.tasks(),
+        *over_bar.tasks(),
+    ]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -282,6 +291,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         _collapse(found),
         *jump.judge(found),
         *sill.judge(found),
+        *wall_jet.judge(found),
         *over_bar.judge(found),
     ]
 

@@ -97,6 +97,10 @@ def _boundaries(case: Case, water: WaterSection, keys: ColumnSection) -> Iterato
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
         )
+    if "jet" in Mixing.of(keys.mixing).marks and water.row is None:
+        yield CaseError(
+            "water.column.mixing_length", keys.mixing, "is that of jets in a row of columns: give [water.row]"
+        )
     if keys.side_walls is not None:
         yield from _side_walls(case, keys.side_walls)
     if keys.start == "steady" and water.drag == "none":

@@ -133,10 +133,11 @@ def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:
             "water.column.bed", None if "bed" not in keys.model_fields_set else "moving",
             "must be 'rough' or 'smooth' in a stream, the rigid bottom where no grains lie",
         )  # fmt: skip
-    if keys.mixing_length not in (None, Mixing.LI_SAWAMOTO.word, Mixing.LAMINAR.word):
+    law = None if keys.mixing_length is None else Mixing.of(keys.mixing_length)
+    if law not in (None, Mixing.LAMINAR) and "grains" not in law.marks:
         yield CaseError(
             "water.column.mixing_length", keys.mixing_length, "counts from the rigid bottom, through any "
-            "deposit; must be 'Li-Sawamoto' or 'none' in a stream, or left out",
+            "deposit; must be 'Li-Sawamoto', 'wall jet' or 'none' in a stream, or left out",
         )  # fmt: skip
     if keys.side_walls is not None and width is not None and keys.side_walls < (1.0 - AGREE) * width:
         yield CaseError(
