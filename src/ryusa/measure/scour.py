@@ -32,6 +32,8 @@ class Scour(Averaged):
     volume : of the scour up to there, with the pores, per width [m2].
     head : height of the surface at the dam's upstream face over that of the tail water, vertical [m].
     tail : depth of the tail water over the last of the bed, as it was in the first frame [m].
+    expected : depth below the bed that Schoklitsch 1932 expects in the end, by the mean head, tail water and
+        discharge [m]; 0 where none, nan without water over the dam.
     averages : of all over the window.
     """
 
@@ -42,6 +44,7 @@ class Scour(Averaged):
     volume: Floats
     head: Floats
     tail: Floats
+    expected: float
     averages: Averages
 
     def rows(self) -> list[dict[str, object]]:
@@ -121,15 +124,16 @@ def scour(run: Run, begin: float | None = None, end: float = math.inf, dam: str 
     note = f"behind dam '{over.name}', {depth[-1]:.3g} m deep at the end, counted from t = {t[0]:.4g} s"
     if (bed[-1] <= floor + ROUND_OFF)[covered].any():
         note += ", dug to the floor"
+    most = math.nan
     if q > 0.0 and head.mean() > 0.0:
         d_90 = laid(run.scene.d, run.scene.m).diameter(0.9)
-        most = schoklitsch(float(head.mean()), q, d_90) - float(tail.mean())
+        most = max(schoklitsch(float(head.mean()), q, d_90) - float(tail.mean()), 0.0)
         expects = f"{most:.3g} m" if most > 0.0 else "none"
         note += (
             f"; Schoklitsch 1932 expects {expects} in the end, within a factor of 2, of q = {q:.3g} m2/s, "
             f"D90 = {1e3 * d_90:.3g} mm and the mean head"
         )
-    return Scour(t, depth, at, length, volume, head, tail, Averages("scour", means, (note,)))
+    return Scour(t, depth, at, length, volume, head, tail, most, Averages("scour", means, (note,)))
 
 
 def schoklitsch(head: float, q: float, d_90: float) -> float:

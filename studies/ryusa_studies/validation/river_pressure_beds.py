@@ -13,6 +13,7 @@ from ryusa_studies.validation import river_dam as dam
 from ryusa_studies.validation import river_dam_break as over_bed
 from ryusa_studies.validation import river_delta as delta
 from ryusa_studies.validation import river_overload as overload
+from ryusa_studies.validation import river_scour as scour
 
 FULL = {"water.row.pressure": "full"}
 UNDER = ", with a pressure of its own"
@@ -22,18 +23,21 @@ SHORT = dam.LOW.shares[1:]  # shares of the feed of the deposits that were too s
 
 
 def tasks() -> Sequence[Task]:
-    """Two hours and a half in all: ten minutes a dam break, a delta three quarters of an hour."""
+    """Three hours in all: ten minutes a dam break, a delta and a scour three quarters of an hour each."""
     return [
         *(over_bed.dam_break(seed, "full") for seed in BREAKS),
         *(dam.LOW.dam(share, FULL) for share in SHORT),
         *(dam.even_bed(*one) for one in dam.LOW.beds),
         *(one for seed in ONE for one in (delta.delta(seed, FULL), delta.pile(seed))),
         *(overload.bed(extra, seed, FULL) for seed in ONE for extra in (True, False)),
+        *scour.tasks(),
     ]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
-    """As the hydrostatic comparison does."""
+    """As the hydrostatic comparison does; scour has none."""
+    if one.case == scour.CASE:
+        return scour.measure(run, one)
     if one.case in dam.CASES:
         return dam.measure(run, one)
     return (overload if one.case == overload.CASE else delta).measure(run, one)
@@ -46,4 +50,5 @@ def judge(found: Found) -> Sequence[Finding]:
         dam.finding(found, dam.LOW, SHORT, FULL, UNDER),
         delta.finding(found, ONE, FULL, UNDER),
         overload.finding(found, ONE, FULL, UNDER),
+        *scour.judge(found),
     ]
