@@ -6,6 +6,7 @@ import pytest
 
 from ryusa.casefile import explain, read
 from ryusa.cases import case_path
+from ryusa.errors import CaseError
 
 LACKS = "hydrostatic, so without"
 FINE = "segments in the head over a crest"
@@ -48,6 +49,20 @@ def test_segments_that_do_not_resolve_a_crest_are_said():
     assert "take water.row.segment = 1.7 cm" in said("weir", FINE, water__row__pressure="full")[1]
     fine = {"water__row__pressure": "full", "water__row__segment": "1.25 cm"}
     assert said("weir", FINE, **fine) == ("", "")
+
+
+def test_check_says_that_a_jet_over_gravel_wants_the_mixing_length_of_one():
+    assert said("scour", "jet of 'weir'") == ("", "")
+    value, origin = said("scour", "jet of 'weir'", water__column__mixing_length="Li-Sawamoto")
+    assert value == "by Li-Sawamoto it spreads over its pool at once" and "'wall jet'" in origin
+    assert said(
+        "weir", "jet of 'weir'", water__row__pressure="full", water__row__dams__0__aerated="true"
+    ) == ("", "")
+
+
+def test_the_mixing_length_of_a_jet_wants_a_row():
+    with pytest.raises(CaseError, match=r"is that of jets in a row of columns: give \[water\.row\]"):
+        read(case_path("bedload_3d.toml"), {"water.column.mixing_length": "wall jet"})
 
 
 def test_check_warns_of_segments_on_which_single_grains_drive_the_water():

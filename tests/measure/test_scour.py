@@ -35,6 +35,7 @@ def test_a_hole_that_is_dug_has_its_depth_place_length_and_volume():
     assert found.volume[-1] == pytest.approx(DEEP * 2.0 * DX, rel=0.1)
     assert found.head == pytest.approx(0.01, abs=2e-3) and found.tail == pytest.approx(0.02 - BED, abs=DZ)
     assert found["depth"].value == pytest.approx(0.5 * DEEP, rel=0.1)
+    assert found.expected == schoklitsch(float(found.head.mean()), 0.002, D) - float(found.tail.mean())
     end = 1e3 * (schoklitsch(float(found.head.mean()), 0.002, D) - float(found.tail.mean()))
     (note,) = found.averages.notes
     assert "behind dam 'weir'" in note and f"Schoklitsch 1932 expects {1e-3 * end:.3g} m" in note
@@ -63,6 +64,12 @@ def test_the_head_is_vertical_and_taken_at_the_face_of_the_dam():
     assert "dug to the floor" not in note  # there was no bed from the start
     run.row._of["phi"][0] = run.row._of["phi"][0, 10]
     assert "dug to the floor" in scour(run, begin=0.0).averages.notes[0]
+
+
+def test_without_water_over_the_dam_nothing_is_expected():
+    run = dug()
+    run.row._of["discharge"][:] = 0.0
+    assert np.isnan(scour(run, begin=0.0).expected)
 
 
 def test_rows_without_a_dam_a_bed_or_time_are_refused():

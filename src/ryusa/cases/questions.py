@@ -97,8 +97,14 @@ QUESTIONS = (
         ("front",), ("flow_field", "grains"),
     ),
     CaseQuestion(
-        "How deep is the scour under a jet or at a pier?", "beside-other-programs.md", (), (),
-        "not to be had: a jet below an aerated dam digs too little; a row has no flow round a pier",
+        "How deep does the jet below a weir dig?", "river.md#with-a-pressure-of-its-own", ("scour",),
+        ("ryusa measure RUN scour", "ryusa draw RUN flow_field"),
+        "depth, place, length of the hole over time, beside Schoklitsch's in the end; not converged",
+        ("scour",), ("flow_field", "long_section"),
+    ),
+    CaseQuestion(
+        "How deep is the scour at a pier?", "beside-other-programs.md", (), (),
+        "not to be had: a row has no flow round a pier",
     ),
     CaseQuestion(
         "What is the angle of repose of my material?", "heap-notebook.md",

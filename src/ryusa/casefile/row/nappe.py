@@ -4,13 +4,14 @@ import math
 from collections.abc import Iterator
 
 from ryusa.casefile.case import Case
+from ryusa.casefile.choices import chosen
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import levels_of, peak_discharge
 from ryusa.casefile.row.schema import RowDamSection, RowSection
 from ryusa.casefile.row.values import RowPlan, bed_over, crest_of, critical_depth, dam_span
-from ryusa.casefile.rows import ExplainRow, number
+from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.errors import CaseError
-from ryusa.laws.families import Pressure
+from ryusa.laws.families import Mixing, Pressure
 
 BRINK = 0.715  # of critical depth: the depth at a free overfall (Rouse 1936)
 
@@ -70,8 +71,15 @@ def _whole(plan: RowPlan, dam: RowDamSection, segment: int) -> int:
 
 
 def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> list[ExplainRow]:
-    """Where the nappe of a dam lands; none where it clings."""
+    """Where the nappe of a dam lands, and whether its jet is known to dig; none where it clings."""
     if not dam.aerated or not q > 0.0:
         return []
     origin = "behind its face, by 1.4 times the speed of critical flow; nearer where a pool stands below it"
-    return [number("water", f"nappe of '{dam.name}' lands", way_of_nappe(case, plan, dam, q), "cm", origin)]
+    way = way_of_nappe(case, plan, dam, q)
+    rows = [number("water", f"nappe of '{dam.name}' lands", way, "cm", origin)]
+    law, behind = chosen(case, Mixing), dam_span(plan, dam)[1]
+    if "grains" in law.marks and "jet" not in law.marks and bed_over(case, plan.x[behind:]).any():
+        origin = "water.column.mixing_length: by 'wall jet' a jet stays along the bed and digs"
+        text = f"by {law.word} it spreads over its pool at once"
+        rows.append(word("water", f"jet of '{dam.name}'", text, origin, "note"))
+    return rows
