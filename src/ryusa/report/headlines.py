@@ -95,6 +95,11 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
         Headline("last:front_m", "The front of the grains has come to x = {}.", "m"),
         Headline("front_speed", "On its way it advanced at {} on average.", "m/s"),
     ),
+    "scour": (
+        Headline("last:depth_m", "The hole below the dam is {} deep at the end.", "mm", 1.0e3),
+        Headline("last:at_m", "Its deepest place lies {} behind the dam.", "mm", 1.0e3),
+        Headline("last:length_m", "Behind the dam it is {} long.", "mm", 1.0e3),
+    ),
     "cone": (Headline("row:slope", _SLOPE, "deg"), Headline("row:height", "It is {} high.", "mm", 1.0e3)),
     "surface": (
         Headline("row:slope", _SLOPE, "deg", DEGREES),

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 
 from ryusa.casefile.case import Case
-from ryusa.casefile.choices import chosen
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import levels_of, peak_discharge
 from ryusa.casefile.row.schema import RowDamSection, RowSection
@@ -77,9 +76,9 @@ def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> list[
     origin = "behind its face, by 1.4 times the speed of critical flow; nearer where a pool stands below it"
     way = way_of_nappe(case, plan, dam, q)
     rows = [number("water", f"nappe of '{dam.name}' lands", way, "cm", origin)]
-    law, behind = chosen(case, Mixing), dam_span(plan, dam)[1]
-    if "grains" in law.marks and "jet" not in law.marks and bed_over(case, plan.x[behind:]).any():
+    law, behind = case.column.mixing_length or Mixing.LI_SAWAMOTO.word, dam_span(plan, dam)[1]
+    if law == Mixing.LI_SAWAMOTO.word and bed_over(case, plan.x[behind:]).any():
         origin = "water.column.mixing_length: by 'wall jet' a jet stays along the bed and digs"
-        text = f"by {law.word} it spreads over its pool at once"
+        text = f"by {law} it spreads over its pool at once"
         rows.append(word("water", f"jet of '{dam.name}'", text, origin, "note"))
     return rows
