@@ -54,15 +54,17 @@ def test_segments_that_do_not_resolve_a_crest_are_said():
 def test_check_says_that_a_jet_over_gravel_wants_the_mixing_length_of_one():
     assert said("scour", "jet of 'weir'") == ("", "")
     value, origin = said("scour", "jet of 'weir'", water__column__mixing_length="Li-Sawamoto")
-    assert value == "by Li-Sawamoto it spreads over its pool at once" and "'wall jet'" in origin
+    assert value == "by Li-Sawamoto it spreads over its pool at once" and "'shear layer'" in origin
     assert said(
         "weir", "jet of 'weir'", water__row__pressure="full", water__row__dams__0__aerated="true"
     ) == ("", "")
 
 
 def test_the_mixing_length_of_a_jet_wants_a_row():
-    with pytest.raises(CaseError, match=r"is that of jets in a row of columns: give \[water\.row\]"):
-        read(case_path("bedload_3d.toml"), {"water.column.mixing_length": "wall jet"})
+    with pytest.raises(
+        CaseError, match=r"is that of jets and eddies in a row of columns: give \[water\.row\]"
+    ):
+        read(case_path("bedload_3d.toml"), {"water.column.mixing_length": "shear layer"})
 
 
 def test_check_warns_of_segments_on_which_single_grains_drive_the_water():

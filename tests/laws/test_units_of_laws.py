@@ -307,7 +307,7 @@ UNITS = {
     "turbulence.length_parabolic_between": "m, m, m, - -> m",
     "turbulence.length_van_driest": "m, m/s, m2/s, - -> m",
     "turbulence.length_growth_li_sawamoto": "-, -, m, - -> m",
-    "turbulence.length_wall_jet": "m -> m",
+    "turbulence.length_shear_layer": "m -> m",
     "turbulence.length_pore_egashira": "-, m, - -> m",
     "turbulence.eddy_viscosity": "m, 1/s, - -> m2/s",
     "turbulence.height_between": "m, m -> m",

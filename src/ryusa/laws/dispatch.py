@@ -60,12 +60,12 @@ rolling_length = dispatch(Arm, ("r_i", "r_j", "overlap"))
 mixing_length = dispatch(
     Mixing,
     ("z", "face", "depth", "u_star", "nu", "kappa"),
-    unasked=(Mixing.LAMINAR, Mixing.LI_SAWAMOTO, Mixing.WALL_JET),
+    unasked=(Mixing.LAMINAR, Mixing.LI_SAWAMOTO, Mixing.SHEAR_LAYER),
 )
 # Whether it grows through the grains, from the bed that they make.
 length_through_grains = marked(Mixing, "grains")
-# Whether it is bounded above a jet along the bed.
-length_above_jet = marked(Mixing, "jet")
+# Whether it is bounded by the widths of shear layers.
+length_of_layers = marked(Mixing, "layers")
 # Whether the mixing length depends on the shear stress of a wall, so that the solver must iterate.
 length_of_wall = marked(Mixing, "wall")
 # Shear stress on the bed over density [m2/s2], and its derivative with respect to u_x [m/s].

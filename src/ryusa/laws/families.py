@@ -344,9 +344,9 @@ class Mixing(Family, key="water.column.mixing_length"):
         ("kappa",), ("wall",))
     LI_SAWAMOTO = (4, "Li-Sawamoto", None, "kappa times the integral of (packed - phi)/packed",
         "Li & Sawamoto 1995", ("kappa", "packed"), ("grains",))
-    WALL_JET = (5, "wall jet", None,
-        "that of Li & Sawamoto, above a jet along the bed at most 0.19 of its half width",
-        "Launder & Rodi 1983", ("kappa", "packed"), ("grains", "jet"))
+    SHEAR_LAYER = (5, "shear layer", None,
+        "that of Li & Sawamoto, at most 0.19 of the half width of jets and eddies", "Launder & Rodi 1983",
+        ("kappa", "packed"), ("grains", "layers"))
 
 
 class SideWalls(Family, key="water.column.side_friction"):

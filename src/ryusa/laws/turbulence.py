@@ -127,8 +127,8 @@ def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: floa
 
 
 @law
-def length_wall_jet(width: float) -> float:
-    """Largest mixing length above a jet along a wall [m]; width [m] from its highest speed to half of it.
+def length_shear_layer(width: float) -> float:
+    """Largest mixing length in a shear layer [m]; width [m] from its highest speed to half of what it loses.
 
     Notes
     -----
@@ -138,7 +138,7 @@ def length_wall_jet(width: float) -> float:
 
     Examples
     --------
-    >>> round(length_wall_jet(0.01), 6)
+    >>> round(length_shear_layer(0.01), 6)
     0.0019
     """
     return 0.19 * width

@@ -4,7 +4,7 @@ import math
 
 from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import (
-    length_above_jet,
+    length_of_layers,
     length_through_grains,
     mixing_length,
     side_friction,
@@ -16,7 +16,7 @@ from ryusa.laws.turbulence import (
     height_between,
     length_growth_li_sawamoto,
     length_pore_egashira,
-    length_wall_jet,
+    length_shear_layer,
     side_wall_drag,
 )
 from ryusa.model.scene import Floats
@@ -124,45 +124,55 @@ def mixing_lengths(
 
 
 @kernel
-def bound_by_jet(p: ColumnParameters, m: int, z: Floats, u: Floats, square: Floats) -> None:
-    """Bound the mixing length above a jet along the bed by its width; other flows keep theirs.
+def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floats, square: Floats) -> None:
+    """Bound the mixing length by the widths of the layers over which the highest speed is lost.
 
     Parameters
     ----------
-    p, m : the column, and its highest wet cell.
+    p, m, phi : the column, its highest wet cell, and concentration [-], shape (n,).
     z, u : middles of the wet part of the cells [m], and speeds there [m/s], shape (n,).
-    square : of `mixing_lengths` [m2], overwritten at the faces above the highest speed.
+    square : of `mixing_lengths` [m2], overwritten; what the pores have stays.
 
     Notes
     -----
-    The bound counts by the share of the highest speed that is lost above it: nothing where the speed grows
-    up to the surface, all of it below water at rest.
+    One layer reaches from the highest speed to the surface, above a jet along the bed, the other down to the
+    bed, as behind a step. Each bound counts by the share of the highest speed that is lost over it.
     """
-    if not length_above_jet(p.mixing):
+    if not length_of_layers(p.mixing):
         return
     at = 0
     for k in range(1, m + 1):
         if abs(u[k]) > abs(u[at]):
             at = k
     along = math.copysign(1.0, u[at])
+    bound_by_layer(p, at, m, along, phi, z, u, square)
+    bound_by_layer(p, at, 0, along, phi, z, u, square)
+
+
+@kernel
+def bound_by_layer(
+    p: ColumnParameters, at: int, end: int, along: float, phi: Floats, z: Floats, u: Floats, square: Floats
+) -> None:
+    """The same at the faces between the cell of the highest speed and that at the end of a layer."""
+    way = 1 if end > at else -1
     highest, least = along * u[at], along * u[at]
-    for k in range(at + 1, m + 1):
+    for k in range(at, end + way, way):
         least = min(least, along * u[k])
     fall = highest - least
     if not fall > 0.0:
         return
-    half, width = highest - 0.5 * fall, z[m] - z[at]
-    for k in range(at + 1, m + 1):
-        here, below = along * u[k], along * u[k - 1]
+    half, width = highest - 0.5 * fall, abs(z[end] - z[at])
+    for k in range(at + way, end + way, way):
+        here, before = along * u[k], along * u[k - way]
         if here <= half:
-            width = z[k] - z[at] - (z[k] - z[k - 1]) * (half - here) / (below - here)
+            width = abs(z[k] - z[at]) - abs(z[k] - z[k - way]) * (half - here) / (before - here)
             break
-    most, part = length_wall_jet(width), min(fall / highest, 1.0)
-    for f in range(at + 1, m + 1):
+    most, part = length_shear_layer(width), min(fall / highest, 1.0)
+    for f in range(min(at, end) + 1, max(at, end) + 1):
         length = math.sqrt(square[f])
         if length > most:
             length += part * (most - length)
-            square[f] = length * length
+            square[f] = max(length * length, pores(p, 0.5 * (phi[f - 1] + phi[f])))
 
 
 @kernel

@@ -12,7 +12,7 @@ import numpy as np
 from ryusa.laws.families import BedKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.closures import bound_by_jet, mixing_lengths
+from ryusa.water.closures import bound_by_layers, mixing_lengths
 from ryusa.water.exchange import Ints
 from ryusa.water.momentum_balance import (
     B_ADVECTED,
@@ -195,7 +195,7 @@ def solve_station(
     old, now = work.given[1], level[2]
     u_star = friction_velocity_at(here, work.given[2, 0], step.z[0] - p.z_low)
     mixing_lengths(here, m, given.phi, step.z, z_surface, u_star, step.square)
-    bound_by_jet(p, m, step.z, work.given[2], step.square)
+    bound_by_layers(here, m, given.phi, step.z, work.given[2], step.square)
     weigh_vertical_flow(here, m, last, work.given[0], step)
     if step.q[0] < 0.0:
         step.below[0] = 0.0

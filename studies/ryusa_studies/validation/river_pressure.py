@@ -19,8 +19,8 @@ from ryusa.study import Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa_studies.validation import river_bar as over_bar
 from ryusa_studies.validation import river_jump as jump
+from ryusa_studies.validation import river_shear_layers as shear_layers
 from ryusa_studies.validation import river_sill as sill
-from ryusa_studies.validation import river_wall_jet as wall_jet
 from ryusa_studies.validation.declared import declared
 
 TITLE = "Pressure along a row"
@@ -275,7 +275,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
         *_of_both(collapse),
         *jump.tasks(),
         *sill.tasks(),
-        *wall_jet.tasks(),
+        *shear_layers.tasks(),
         *over_bar.tasks(),
     ]
 
@@ -291,7 +291,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         _collapse(found),
         *jump.judge(found),
         *sill.judge(found),
-        *wall_jet.judge(found),
+        *shear_layers.judge(found),
         *over_bar.judge(found),
     ]
 

@@ -97,9 +97,11 @@ def _boundaries(case: Case, water: WaterSection, keys: ColumnSection) -> Iterato
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
         )
-    if "jet" in Mixing.of(keys.mixing).marks and water.row is None:
+    if "layers" in Mixing.of(keys.mixing).marks and water.row is None:
         yield CaseError(
-            "water.column.mixing_length", keys.mixing, "is that of jets in a row of columns: give [water.row]"
+            "water.column.mixing_length",
+            keys.mixing,
+            "is that of jets and eddies in a row of columns: give [water.row]",
         )
     if keys.side_walls is not None:
         yield from _side_walls(case, keys.side_walls)

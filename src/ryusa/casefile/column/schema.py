@@ -58,7 +58,7 @@ class ColumnSection(Section):
     default, except without drag and in a row."""
     mixing_length: Annotated[str, WordOf(families.Mixing)] | None = None
     """Mixing length of the turbulence: kappa times the integral of (packed - phi)/packed over height (default
-    over a moving bed), the same with a bound above jets along the bed (in a row), kappa z, kappa z
+    over a moving bed), the same bounded in shear layers (in a row), kappa z, kappa z
     sqrt(1 - z/depth) of Nezu (default over a fixed bed), kappa z with van Driest's damping at the wall, or no
     turbulence."""
     kappa: Annotated[Number, Field(gt=0, le=1)] = 0.41

@@ -78,7 +78,7 @@ def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> list[
     rows = [number("water", f"nappe of '{dam.name}' lands", way, "cm", origin)]
     law, behind = case.column.mixing_length or Mixing.LI_SAWAMOTO.word, dam_span(plan, dam)[1]
     if law == Mixing.LI_SAWAMOTO.word and bed_over(case, plan.x[behind:]).any():
-        origin = "water.column.mixing_length: by 'wall jet' a jet stays along the bed and digs"
+        origin = "water.column.mixing_length: by 'shear layer' a jet stays along the bed and digs"
         text = f"by {law} it spreads over its pool at once"
         rows.append(word("water", f"jet of '{dam.name}'", text, origin, "note"))
     return rows

@@ -224,7 +224,8 @@ def _reach(one: Reach, more: str) -> list[ExplainRow]:
 
 def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     rows: list[ExplainRow] = []
-    q = discharge_of(case)
+    q = peak_discharge(case)
+    more = ", at the peak" if q > discharge_of(case) else ""
     for dam in keys.dams:
         first, end = dam_span(plan, dam)
         crest = crest_of(plan, dam)
@@ -245,7 +246,7 @@ def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         if dam.concentration is None and q > 0.0:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case.motion))))) ** (2.0 / 3.0)
             origin = f"critical flow without loss, q = (2/3)^1.5 sqrt(g) H^1.5; {_own_head(end - first)}"
-            rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
+            rows.append(number("water", f"energy head over '{dam.name}'{more}", head, "cm", origin))
             rows += nappe_rows(case, plan, dam, q)
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
             rows += _deposit_behind(dam.name, found)

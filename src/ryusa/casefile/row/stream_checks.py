@@ -137,7 +137,7 @@ def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:
     if law not in (None, Mixing.LAMINAR) and "grains" not in law.marks:
         yield CaseError(
             "water.column.mixing_length", keys.mixing_length, "counts from the rigid bottom, through any "
-            "deposit; must be 'Li-Sawamoto', 'wall jet' or 'none' in a stream, or left out",
+            "deposit; must be 'Li-Sawamoto', 'shear layer' or 'none' in a stream, or left out",
         )  # fmt: skip
     if keys.side_walls is not None and width is not None and keys.side_walls < (1.0 - AGREE) * width:
         yield CaseError(

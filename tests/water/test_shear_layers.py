@@ -1,4 +1,4 @@
-"""The mixing length above a jet along the bed: its bound, flows that it leaves alone, how a jet widens."""
+"""The mixing length of shear layers: its bound, what it leaves alone, how a jet widens, an eddy ends."""
 
 from dataclasses import replace
 
@@ -6,24 +6,24 @@ import numpy as np
 import pytest
 
 from ryusa.laws.families import BedKind, Mixing, Pressure
-from ryusa.laws.turbulence import length_wall_jet
+from ryusa.laws.turbulence import length_shear_layer
 from ryusa.model.row import ColumnRow
 from ryusa.water._kernel import parameters_of
-from ryusa.water.closures import bound_by_jet
+from ryusa.water.closures import bound_by_layers
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa_studies.validation.river_pressure import G, water
-from ryusa_studies.validation.river_wall_jet import widening
+from ryusa_studies.validation.river_shear_layers import eddy, widening
 
 DZ, N = 0.002, 40
 Z = (np.arange(N) + 0.5) * DZ
 LONG = 0.02  # mixing length at all faces [m]
 
 
-def bounded(u: np.ndarray, mixing: Mixing = Mixing.WALL_JET) -> np.ndarray:
+def bounded(u: np.ndarray, mixing: Mixing = Mixing.SHEAR_LAYER) -> np.ndarray:
     """Mixing lengths [m] after the bound, all LONG before it, for the speeds of a column."""
     p = parameters_of(replace(water(DZ, N, N * DZ, nu=1e-6), mixing=mixing))
     square = np.full(N + 1, LONG**2)
-    bound_by_jet(p, N - 1, Z, u, square)
+    bound_by_layers(p, N - 1, np.zeros(N), Z, u, square)
     return np.sqrt(square)
 
 
@@ -32,39 +32,57 @@ def test_above_a_jet_below_still_water_the_length_goes_with_its_half_width(way):
     width, at = 0.01, 5
     jet = np.where(np.arange(N) < at, 0.8, np.cosh(0.881374 * (Z - Z[at]) / width) ** -2.0)
     found = bounded(way * jet)
-    assert found[: at + 1] == pytest.approx(LONG, rel=1e-15)
-    assert found[at + 1 : -1] == pytest.approx(length_wall_jet(width), rel=5e-3)
+    assert found[at + 1 : -1] == pytest.approx(length_shear_layer(width), rel=5e-3)
     steepest = np.abs(np.diff(jet)[at:]).max() / DZ
     assert found[at + 1] ** 2 * steepest == pytest.approx(0.0235 * width, rel=0.06)  # 0.073/(4 0.881**2)
 
 
-def test_flow_that_is_swiftest_at_its_surface_keeps_its_length():
-    for u in (np.log1p(Z), np.zeros(N), np.full(N, -0.3), np.linspace(-0.1, 0.4, N)):
+def test_below_a_stream_over_still_water_too():
+    width, top = 0.015, N - 1
+    layer = np.cosh(0.881374 * (Z - Z[top]) / width) ** -2.0
+    found = bounded(layer)
+    assert found[1:top] == pytest.approx(length_shear_layer(width), rel=0.02)
+
+
+def test_even_flow_and_other_lengths_keep_theirs():
+    for u in (np.zeros(N), np.full(N, -0.3)):
         assert (bounded(u) == LONG).all()
     assert (bounded(np.cos(20.0 * Z), Mixing.LI_SAWAMOTO) == LONG).all()
 
 
-def test_the_bound_comes_in_with_the_speed_that_is_lost_above_the_jet():
+def test_the_bound_comes_in_with_the_speed_that_is_lost():
     jet = np.cosh(100.0 * (Z - Z[5])) ** -2.0
     found = [bounded(1.0 - share * (1.0 - jet))[20] for share in (0.0, 0.25, 0.5, 1.0)]
     whole = LONG - found[-1]
     assert [(LONG - one) / whole for one in found] == pytest.approx([0.0, 0.25, 0.5, 1.0], abs=0.01)
 
 
-def test_a_uniform_stream_is_the_same_with_and_without_it():
-    """A level row of one period, driven by its slope: the speed grows up to the surface."""
+def test_a_length_that_is_shorter_stays():
+    p = parameters_of(replace(water(DZ, N, N * DZ, nu=1e-6), mixing=Mixing.SHEAR_LAYER))
+    square = np.full(N + 1, 1e-8)
+    bound_by_layers(p, N - 1, np.zeros(N), Z, np.cos(20.0 * Z), square)
+    assert (square == 1e-8).all()
+
+
+def test_a_uniform_stream_lies_between_those_of_li_and_sawamoto_and_nezu():
+    """A level row of one period, driven by its slope."""
     found = []
-    for mixing in (Mixing.LI_SAWAMOTO, Mixing.WALL_JET):
+    for mixing in (Mixing.LI_SAWAMOTO, Mixing.SHEAR_LAYER, Mixing.PARABOLIC):
         c = replace(
             water(0.005, 30, 0.1, nu=1e-6), bed=BedKind.ROUGH, k_rough=0.004, g_x=0.01 * G, mixing=mixing
         )
         row = ColumnRow(c, 0.05, np.zeros(4), G, pressure=Pressure.FULL)
-        found.append(advance_row(row, row_at_rest(row, np.full(4, 0.1)), 20.0).u)
-    assert found[1] == pytest.approx(found[0], rel=1e-12) and found[0].max() > 0.5
+        found.append(advance_row(row, row_at_rest(row, np.full(4, 0.1)), 30.0).u[1, :20].mean())
+    assert found[0] < found[1] < found[2] < 1.1 * found[0]
 
 
 def test_a_jet_along_the_bed_widens_as_wall_jets_do():
     """In two thirds of the cells of the gate; without the bound it loses its speed twice as fast."""
-    own, other = (widening(word, cell=0.0075, time=6.0) for word in ("wall jet", "Li-Sawamoto"))
+    own, other = (widening(word, cell=0.0075, time=6.0) for word in ("shear layer", "Li-Sawamoto"))
     assert float(own["rate"]) == pytest.approx(0.073, rel=0.2)
     assert own["speed"][-1] > 1.2 * other["speed"][-1]
+
+
+def test_the_eddy_behind_a_step_ends_where_measured():
+    """Those of the gate, for a shorter time; cells of twice the size have 4.7 heights, Li & Sawamoto 2.8."""
+    assert 5.0 < float(eddy("shear layer", time=12.0)["length"]) < 7.5

@@ -1,0 +1,119 @@
+"""Shear layers along a row: how fast a jet along the floor widens, how long the eddy behind a step is.
+
+Both with the mixing length that knows them and with that of streams (design/0030).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ryusa.figures.comparison import Curve
+from ryusa.laws.families import BedKind, Mixing, Pressure, SurfaceRule
+from ryusa.model.arrays import Floats
+from ryusa.model.column import Column
+from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.study import Finding, Found, Task, calculation
+from ryusa.water.row import RowArrays, advance_row, row_at_rest
+from ryusa_studies.validation.declared import declared
+
+DECLARED = declared(__file__)
+
+G = 9.80665
+THICK, DEEP, LONG = 0.02, 0.5, 1.6  # of the jet, the water, the row [m]
+WITHIN = 0.3, 1.0  # where it widens freely: beyond its core, before the end turns it [m]
+LENGTHS = ("shear layer", "Li-Sawamoto")
+TIMES = 40  # at which it is looked at; the later half counts
+STEP, AFTER, SPEED = 0.05, 0.1, 0.25  # height of a step, depth behind it [m], mean speed over it [m/s]
+BEFORE, BEHIND = 0.3, 1.0  # row before the step and behind it [m]
+
+
+def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, Floats]:
+    """A jet of 1 m/s enters along the floor.
+
+    Returns
+    -------
+    Over the way `x` [m] within WITHIN: `width`, height at which half of the highest speed is left [m], and
+    that `speed` [m/s]; `rate`, at which it widens [-]. Means over the later half of the time.
+    """
+    n, dx = round(1.1 * DEEP / cell), 4.0 * cell
+    c = Column(
+        z_low=0.0, dz=cell, n=n, depth=DEEP, nu=1e-6, bed=BedKind.SMOOTH, mixing=Mixing.of(mixing),
+        surface=SurfaceRule.VOLUME,
+    )  # fmt: skip
+    profile = np.where(np.arange(n) < round(THICK / cell), 1.0, 1e-9)
+    inlet = RowEnd(EndKind.DISCHARGE, discharge=THICK, profile=profile)
+    segments, level = round(LONG / dx), RowEnd(EndKind.LEVEL, level=DEEP)
+    row = ColumnRow(c, dx, np.zeros(segments), G, inlet, level, pressure=Pressure.FULL)
+    mean = _mean(row, DEEP, time)
+    inside = np.flatnonzero((row.x_station > WITHIN[0]) & (row.x_station < WITHIN[1]))
+    x, speed = row.x_station[inside], mean[inside].max(axis=1)
+    width = np.array([_half(c.z, one) for one in mean[inside]])
+    return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
+
+
+def eddy(mixing: str, cell: float = 0.005, time: float = 30.0) -> dict[str, Floats]:
+    """Water flows over a step down to twice its depth.
+
+    Returns
+    -------
+    Over the way `x` behind the step in its heights [-]: `low`, speed in the lowest cell over the mean speed
+    over the step [-]; `length` of the eddy, from the step to where this turns, in heights [-].
+    """
+    n, dx = 2 * round(AFTER / cell), 2.0 * cell
+    c = Column(
+        z_low=0.0, dz=cell, n=n, depth=AFTER, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.005,
+        mixing=Mixing.of(mixing), surface=SurfaceRule.VOLUME,
+    )  # fmt: skip
+    segments = round((BEFORE + BEHIND) / dx)
+    before = (np.arange(segments) + 0.5) * dx < BEFORE
+    inlet = RowEnd(EndKind.DISCHARGE, discharge=SPEED * (AFTER - STEP))
+    row = ColumnRow(
+        c, dx, np.zeros(segments), G, inlet, RowEnd(EndKind.LEVEL, level=AFTER),
+        solid=np.where(before, round(STEP / cell), 0), pressure=Pressure.FULL,
+    )  # fmt: skip
+    mean, behind = _mean(row, AFTER, time), row.x_station > BEFORE + 0.5 * dx
+    x, low = (row.x_station[behind] - BEFORE) / STEP, mean[behind, 0] / SPEED
+    back = np.flatnonzero(low < 0.0)
+    k = int(back[-1]) if len(back) else 0
+    length = float(np.interp(0.0, low[k : k + 2], x[k : k + 2])) if len(back) else 0.0
+    return {"x": x, "low": low, "length": np.array(length)}
+
+
+def _mean(row: ColumnRow, level: float, time: float) -> Floats:
+    """Speeds [m/s] after a start at rest up to a level [m], mean of the later half of a time [s]."""
+    now, arrays = row_at_rest(row, np.full(len(row.bottom), level)), RowArrays.of(row)
+    mean = np.zeros_like(now.u)
+    for k in range(TIMES):
+        now = advance_row(row, now, time / TIMES, arrays=arrays)
+        mean += now.u * (2 * k >= TIMES) / (TIMES / 2)
+    return mean
+
+
+def _half(z: Floats, u: Floats) -> float:
+    """Height above the highest speed at which half of it is left [m]."""
+    most = int(u.argmax())
+    k = most + int(np.flatnonzero(u[most:] < 0.5 * u[most])[0])
+    return float(np.interp(0.5 * u[most], [u[k], u[k - 1]], [z[k], z[k - 1]]))
+
+
+def tasks() -> Sequence[Task]:
+    """A minute."""
+    return [calculation(how, mixing=one, seconds=15.0) for how in (widening, eddy) for one in LENGTHS]
+
+
+def judge(found: Found) -> Sequence[Finding]:
+    """Beside the rate of plane wall jets, and eddies behind steps."""
+    *runs, behind, elsewhere = (found[one] for one in tasks())
+    own, other = runs
+    x = own["x"]
+    line = float(own["width"].mean()) + 0.073 * (x - float(x.mean()))
+    jet = DECLARED["wall-jet"].finding(
+        [Curve(word, run["x"], 1e3 * run["width"]) for word, run in zip(LENGTHS, runs, strict=True)],
+        [Curve("widens by 0.073", x, 1e3 * line)],
+        {"rate": abs(float(own["rate"]) / 0.073 - 1.0)}, other=float(other["rate"]),
+    )  # fmt: skip
+    eddies = DECLARED["step"].finding(
+        [Curve(word, run["x"], run["low"]) for word, run in zip(LENGTHS, (behind, elsewhere), strict=True)],
+        [], {"length": float(behind["length"])}, other=float(elsewhere["length"]),
+    )  # fmt: skip
+    return [jet, eddies]
