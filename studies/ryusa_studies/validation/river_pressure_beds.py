@@ -23,7 +23,7 @@ SHORT = dam.LOW.shares[1:]  # shares of the feed of the deposits that were too s
 
 
 def tasks() -> Sequence[Task]:
-    """Three hours in all: ten minutes a dam break, a delta and a scour three quarters of an hour each."""
+    """Three hours in all: ten minutes a dam break, a delta three quarters of an hour."""
     return [
         *(over_bed.dam_break(seed, "full") for seed in BREAKS),
         *(dam.LOW.dam(share, FULL) for share in SHORT),

@@ -25,7 +25,7 @@ def jet(seed: int = 1) -> CaseRun:
 
 
 def tasks() -> Sequence[Task]:
-    """Forty minutes."""
+    """Ten minutes."""
     return [jet()]
 
 
@@ -47,7 +47,7 @@ def measure(run: Results, _one: CaseRun) -> dict[str, Floats]:
 
 
 def judge(found: Found) -> Sequence[Finding]:
-    """Depth after a minute over that in the end."""
+    """Depth after 15 s over that in the end."""
     one = found[jet()]
     t, depth, expected = one["t"], one["depth"], float(one["expected"])
     ratio = float(depth[t > t[-1] - LAST].mean()) / expected
