@@ -6,24 +6,24 @@ import numpy as np
 import pytest
 
 from ryusa.laws.families import BedKind, Mixing, Pressure
-from ryusa.laws.turbulence import length_shear_layer
+from ryusa.laws.turbulence import length_pore_egashira, length_shear_layer
 from ryusa.model.row import ColumnRow
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import bound_by_layers
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa_studies.validation.river_pressure import G, water
-from ryusa_studies.validation.river_shear_layers import eddy, widening
+from ryusa_studies.validation.river_shear_layers import LENGTHS, eddy, widening
 
 DZ, N = 0.002, 40
 Z = (np.arange(N) + 0.5) * DZ
 LONG = 0.02  # mixing length at all faces [m]
 
 
-def bounded(u: np.ndarray, mixing: Mixing = Mixing.SHEAR_LAYER) -> np.ndarray:
+def bounded(u: np.ndarray, mixing: Mixing = Mixing.SHEAR_LAYER, phi: float = 0.0, **more) -> np.ndarray:
     """Mixing lengths [m] after the bound, all LONG before it, for the speeds of a column."""
-    p = parameters_of(replace(water(DZ, N, N * DZ, nu=1e-6), mixing=mixing))
-    square = np.full(N + 1, LONG**2)
-    bound_by_layers(p, N - 1, np.zeros(N), Z, u, square)
+    p = parameters_of(replace(water(DZ, N, N * DZ, nu=1e-6), mixing=mixing, **more))
+    square = np.full(N + 1, (1.0 - phi) * LONG**2)
+    bound_by_layers(p, N - 1, np.full(N, phi), Z, u, square)
     return np.sqrt(square)
 
 
@@ -42,6 +42,14 @@ def test_below_a_stream_over_still_water_too():
     layer = np.cosh(0.881374 * (Z - Z[top]) / width) ** -2.0
     found = bounded(layer)
     assert found[1:top] == pytest.approx(length_shear_layer(width), rel=0.02)
+
+
+def test_grains_take_their_share_of_it_and_the_length_of_the_pores_stays():
+    jet = np.cosh(100.0 * (Z - Z[5])) ** -2.0
+    clear, laden = bounded(jet), bounded(jet, phi=0.3)
+    assert laden[6:-1] ** 2 == pytest.approx(0.7 * clear[6:-1] ** 2)
+    pores = bounded(jet, phi=0.3, k_f=0.16, d=0.01)[6:-1]
+    assert pores == pytest.approx(length_pore_egashira(0.3, 0.01, 0.16)) and (pores > laden[6:-1]).all()
 
 
 def test_even_flow_and_other_lengths_keep_theirs():
@@ -77,12 +85,13 @@ def test_a_uniform_stream_lies_between_those_of_li_and_sawamoto_and_nezu():
 
 
 def test_a_jet_along_the_bed_widens_as_wall_jets_do():
-    """In two thirds of the cells of the gate; without the bound it loses its speed twice as fast."""
+    """In cells half as large again as those of the gate; Li & Sawamoto's length takes more of its speed."""
     own, other = (widening(word, cell=0.0075, time=6.0) for word in ("shear layer", "Li-Sawamoto"))
     assert float(own["rate"]) == pytest.approx(0.073, rel=0.2)
     assert own["speed"][-1] > 1.2 * other["speed"][-1]
 
 
-def test_the_eddy_behind_a_step_ends_where_measured():
-    """Those of the gate, for a shorter time; cells of twice the size have 4.7 heights, Li & Sawamoto 2.8."""
-    assert 5.0 < float(eddy("shear layer", time=12.0)["length"]) < 7.5
+def test_the_eddy_behind_a_step_is_twice_as_long():
+    """A step down to twice the depth, where the eddy is 5.6 and 2.8 heights long in these cells."""
+    own, other = (float(eddy(word, over=0.05, time=12.0)["length"]) for word in LENGTHS)
+    assert own > 1.8 * other > 4.0

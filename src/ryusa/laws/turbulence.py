@@ -133,8 +133,8 @@ def length_shear_layer(width: float) -> float:
     Notes
     -----
     Source: plane wall jets widen by 0.073 of their way (Launder & Rodi 1983, Ann. Rev. Fluid Mech. 15), a
-    plane jet U sech(0.881 y/width)**2 by S with a viscosity S U width/(4 0.881**2). The length has this
-    viscosity where the profile is steepest, 0.679 U/width.
+    free jet U sech(0.881 y/width)**2 by S with a viscosity S U width/(4 0.881**2). With the first rate, the
+    length has this viscosity where the second profile is steepest, 0.679 U/width.
 
     Examples
     --------

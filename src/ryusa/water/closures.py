@@ -169,10 +169,11 @@ def bound_by_layer(
             break
     most, part = length_shear_layer(width), min(fall / highest, 1.0)
     for f in range(min(at, end) + 1, max(at, end) + 1):
-        length = math.sqrt(square[f])
-        if length > most:
-            length += part * (most - length)
-            square[f] = max(length * length, pores(p, 0.5 * (phi[f - 1] + phi[f])))
+        share = 0.5 * (phi[f - 1] + phi[f])
+        length, bound = math.sqrt(square[f]), math.sqrt(1.0 - share) * most
+        if length > bound:
+            length += part * (bound - length)
+            square[f] = max(length * length, pores(p, share))
 
 
 @kernel

@@ -23,7 +23,7 @@ THICK, DEEP, LONG = 0.02, 0.5, 1.6  # of the jet, the water, the row [m]
 WITHIN = 0.3, 1.0  # where it widens freely: beyond its core, before the end turns it [m]
 LENGTHS = ("shear layer", "Li-Sawamoto")
 TIMES = 40  # at which it is looked at; the later half counts
-STEP, AFTER, SPEED = 0.05, 0.1, 0.25  # height of a step, depth behind it [m], mean speed over it [m/s]
+STEP, OVER, SPEED = 0.05, 0.25, 0.25  # height of a step, depth over it [m], mean speed there [m/s]
 BEFORE, BEHIND = 0.3, 1.0  # row before the step and behind it [m]
 
 
@@ -51,27 +51,28 @@ def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, 
     return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
 
 
-def eddy(mixing: str, cell: float = 0.005, time: float = 30.0) -> dict[str, Floats]:
-    """Water flows over a step down to twice its depth.
+def eddy(mixing: str, over: float = OVER, cell: float = 0.005, time: float = 60.0) -> dict[str, Floats]:
+    """Water `over` [m] deep flows over a step down.
 
     Returns
     -------
     Over the way `x` behind the step in its heights [-]: `low`, speed in the lowest cell over the mean speed
     over the step [-]; `length` of the eddy, from the step to where this turns, in heights [-].
     """
-    n, dx = 2 * round(AFTER / cell), 2.0 * cell
+    deep = STEP + over
+    n, dx = 2 * round(deep / cell), 2.0 * cell
     c = Column(
-        z_low=0.0, dz=cell, n=n, depth=AFTER, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.005,
+        z_low=0.0, dz=cell, n=n, depth=deep, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.005,
         mixing=Mixing.of(mixing), surface=SurfaceRule.VOLUME,
     )  # fmt: skip
     segments = round((BEFORE + BEHIND) / dx)
     before = (np.arange(segments) + 0.5) * dx < BEFORE
-    inlet = RowEnd(EndKind.DISCHARGE, discharge=SPEED * (AFTER - STEP))
+    inlet = RowEnd(EndKind.DISCHARGE, discharge=SPEED * over)
     row = ColumnRow(
-        c, dx, np.zeros(segments), G, inlet, RowEnd(EndKind.LEVEL, level=AFTER),
+        c, dx, np.zeros(segments), G, inlet, RowEnd(EndKind.LEVEL, level=deep),
         solid=np.where(before, round(STEP / cell), 0), pressure=Pressure.FULL,
     )  # fmt: skip
-    mean, behind = _mean(row, AFTER, time), row.x_station > BEFORE + 0.5 * dx
+    mean, behind = _mean(row, deep, time), row.x_station > BEFORE + 0.5 * dx
     x, low = (row.x_station[behind] - BEFORE) / STEP, mean[behind, 0] / SPEED
     back = np.flatnonzero(low < 0.0)
     k = int(back[-1]) if len(back) else 0
@@ -90,7 +91,7 @@ def _mean(row: ColumnRow, level: float, time: float) -> Floats:
 
 
 def _half(z: Floats, u: Floats) -> float:
-    """Height above the highest speed at which half of it is left [m]."""
+    """Height above the floor at which half of the highest speed is left, above it [m]."""
     most = int(u.argmax())
     k = most + int(np.flatnonzero(u[most:] < 0.5 * u[most])[0])
     return float(np.interp(0.5 * u[most], [u[k], u[k - 1]], [z[k], z[k - 1]]))
@@ -111,6 +112,7 @@ def judge(found: Found) -> Sequence[Finding]:
         [Curve(word, run["x"], 1e3 * run["width"]) for word, run in zip(LENGTHS, runs, strict=True)],
         [Curve("widens by 0.073", x, 1e3 * line)],
         {"rate": abs(float(own["rate"]) / 0.073 - 1.0)}, other=float(other["rate"]),
+        at=float(x[-1]), left=float(own["speed"][-1]), rest=float(other["speed"][-1]),
     )  # fmt: skip
     eddies = DECLARED["step"].finding(
         [Curve(word, run["x"], run["low"]) for word, run in zip(LENGTHS, (behind, elsewhere), strict=True)],
