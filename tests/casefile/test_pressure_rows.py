@@ -60,6 +60,14 @@ def test_check_says_that_a_jet_over_gravel_wants_the_mixing_length_of_one():
     ) == ("", "")
 
 
+def test_heads_and_nappes_below_a_hydrograph_are_those_of_its_peak():
+    value, origin = said("scour", "energy head over 'weir', at the peak")
+    q, g = 0.016, 9.80665
+    assert float(value) == pytest.approx((q / ((2.0 / 3.0) ** 1.5 * math.sqrt(g))) ** (2.0 / 3.0), rel=1e-3)
+    assert "critical flow" in origin
+    assert 0.08 < float(said("scour", "nappe of 'weir' lands, at the peak")[0]) < 0.16
+
+
 def test_the_mixing_length_of_a_jet_wants_a_row():
     with pytest.raises(
         CaseError, match=r"is that of jets and eddies in a row of columns: give \[water\.row\]"

@@ -133,7 +133,7 @@ class Column(Flow):
         """Height of the surface at the start at places along x [m], same shape."""
         return np.full(x.shape, self.z_surface)
 
-    def refuses(self) -> tuple[str, ...]:
+    def refuses(self, in_row: bool = False) -> tuple[str, ...]:
         """Reasons why this column cannot be solved, one sentence each; () if there are none."""
         faults = list(refuse(depth=self.depth, dz=self.dz, n=self.n, z_low=self.z_low, z_bed=self.origin))
         for name in ("area", "rho_w", "nu", "kappa", "phi_max"):
@@ -153,6 +153,8 @@ class Column(Flow):
                 )
         if self.bed is BedKind.MOVING and "wall" in self.mixing.marks:
             faults.append(f"mixing length {self.mixing.word} needs a wall: choose another over a moving bed")
+        if not in_row and "layers" in self.mixing.marks:
+            faults.append(f"mixing length {self.mixing.word} is that of a row of columns: choose another")
         if self.top is Top.LID and self.surface is SurfaceRule.VOLUME:
             faults.append("a lid holds the surface in its place: keep the depth, not the volume")
         if self.side is not SideWalls.NONE and not self.width > 0.0:

@@ -248,7 +248,7 @@ class ColumnRow(Flow):
     def refuses(self) -> tuple[str, ...]:
         """Reasons why this row cannot be solved, one sentence each; () if there are none."""
         c = self.column
-        faults = list(c.refuses())
+        faults = list(c.refuses(in_row=True))
         if (self.upstream is None) != (self.downstream is None):
             faults.append("a row has two ends, or is periodic and has none")
         if not self.dx > 0.0:

@@ -98,7 +98,7 @@ HEADLINES: dict[str, tuple[Headline, ...]] = {
     "scour": (
         Headline("last:depth_m", "The hole below the dam is {} deep at the end.", "mm", 1.0e3),
         Headline("last:at_m", "Its deepest place lies {} behind the dam.", "mm", 1.0e3),
-        Headline("last:length_m", "Behind the dam it is {} long.", "mm", 1.0e3),
+        Headline("last:length_m", "It ends {} behind the dam.", "mm", 1.0e3),
     ),
     "cone": (Headline("row:slope", _SLOPE, "deg"), Headline("row:height", "It is {} high.", "mm", 1.0e3)),
     "surface": (

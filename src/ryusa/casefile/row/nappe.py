@@ -3,6 +3,8 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from ryusa.casefile.case import Case
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.ends import levels_of, peak_discharge
@@ -69,15 +71,16 @@ def _whole(plan: RowPlan, dam: RowDamSection, segment: int) -> int:
     return round((crest_of(plan, dam) - float(plan.bottom[segment])) / plan.cell)
 
 
-def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float) -> list[ExplainRow]:
+def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float, more: str) -> list[ExplainRow]:
     """Where the nappe of a dam lands, and whether its jet is known to dig; none where it clings."""
     if not dam.aerated or not q > 0.0:
         return []
     origin = "behind its face, by 1.4 times the speed of critical flow; nearer where a pool stands below it"
     way = way_of_nappe(case, plan, dam, q)
-    rows = [number("water", f"nappe of '{dam.name}' lands", way, "cm", origin)]
-    law, behind = case.column.mixing_length or Mixing.LI_SAWAMOTO.word, dam_span(plan, dam)[1]
-    if law == Mixing.LI_SAWAMOTO.word and bed_over(case, plan.x[behind:]).any():
+    rows = [number("water", f"nappe of '{dam.name}' lands{more}", way, "cm", origin)]
+    law = case.column.mixing_length or Mixing.LI_SAWAMOTO.word  # as `choices`; a bed is that of a stream
+    at = (dam_span(plan, dam)[1] + 0.5) * plan.dx + plan.x_low + way
+    if law == Mixing.LI_SAWAMOTO.word and bed_over(case, np.array([at]))[0] > 0.0:
         origin = "water.column.mixing_length: by 'shear layer' a jet stays along the bed and digs"
         text = f"by {law} it spreads over its pool at once"
         rows.append(word("water", f"jet of '{dam.name}'", text, origin, "note"))

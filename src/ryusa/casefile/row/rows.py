@@ -247,7 +247,7 @@ def _dams(case: Case, keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case.motion))))) ** (2.0 / 3.0)
             origin = f"critical flow without loss, q = (2/3)^1.5 sqrt(g) H^1.5; {_own_head(end - first)}"
             rows.append(number("water", f"energy head over '{dam.name}'{more}", head, "cm", origin))
-            rows += nappe_rows(case, plan, dam, q)
+            rows += nappe_rows(case, plan, dam, q, more)
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
             rows += _deposit_behind(dam.name, found)
     return rows
