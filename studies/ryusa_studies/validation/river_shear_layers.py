@@ -51,7 +51,7 @@ def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, 
     return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
 
 
-def eddy(mixing: str, over: float = OVER, cell: float = 0.005, time: float = 60.0) -> dict[str, Floats]:
+def eddy(mixing: str, over: float = OVER, cell: float = 0.005, time: float = 30.0) -> dict[str, Floats]:
     """Water `over` [m] deep flows over a step down.
 
     Returns
@@ -60,7 +60,7 @@ def eddy(mixing: str, over: float = OVER, cell: float = 0.005, time: float = 60.
     over the step [-]; `length` of the eddy, from the step to where this turns, in heights [-].
     """
     deep = STEP + over
-    n, dx = 2 * round(deep / cell), 2.0 * cell
+    n, dx = round(1.5 * deep / cell), 2.0 * cell
     c = Column(
         z_low=0.0, dz=cell, n=n, depth=deep, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.005,
         mixing=Mixing.of(mixing), surface=SurfaceRule.VOLUME,
@@ -98,7 +98,7 @@ def _half(z: Floats, u: Floats) -> float:
 
 
 def tasks() -> Sequence[Task]:
-    """A minute."""
+    """Three minutes."""
     return [calculation(how, mixing=one, seconds=15.0) for how in (widening, eddy) for one in LENGTHS]
 
 
