@@ -7,12 +7,12 @@ import pytest
 
 from ryusa.laws.families import BedKind, Mixing, Pressure
 from ryusa.laws.turbulence import length_pore_egashira, length_shear_layer
-from ryusa.model.row import ColumnRow
+from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import bound_by_layers
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa_studies.validation.river_pressure import G, water
-from ryusa_studies.validation.river_shear_layers import LENGTHS, eddy, widening
+from ryusa_studies.validation.river_shear_layers import widening
 
 DZ, N = 0.002, 40
 Z = (np.arange(N) + 0.5) * DZ
@@ -91,7 +91,28 @@ def test_a_jet_along_the_bed_widens_as_wall_jets_do():
     assert own["speed"][-1] > 1.2 * other["speed"][-1]
 
 
+def eddy(mixing: str, step: float = 0.05, cell: float = 0.005) -> float:
+    """Length of the eddy behind a step down to twice the depth, in heights of the step."""
+    deep, dx = 2.0 * step, 2.0 * cell
+    column = replace(
+        water(cell, 2 * round(deep / cell), deep, nu=1e-6), bed=BedKind.ROUGH, k_rough=0.005,
+        mixing=Mixing.of(mixing),
+    )  # fmt: skip
+    before = round(0.3 / dx)
+    row = ColumnRow(
+        column, dx, np.zeros(before + 100), G, RowEnd(EndKind.DISCHARGE, discharge=0.25 * step),
+        RowEnd(EndKind.LEVEL, level=deep), pressure=Pressure.FULL,
+        solid=np.where(np.arange(before + 100) < before, round(step / cell), 0),
+    )  # fmt: skip
+    now, mean = row_at_rest(row, np.full(before + 100, deep)), 0.0
+    for _ in range(12):
+        now = advance_row(row, now, 1.0)
+        mean = mean + now.u[:, 0] * (now.t > 6.0)
+    back = np.flatnonzero((row.x_station > 0.3 + 0.5 * dx) & (mean < 0.0))
+    return float(row.x_station[back[-1]] - 0.3) / step
+
+
 def test_the_eddy_behind_a_step_is_twice_as_long():
-    """A step down to twice the depth, where the eddy is 5.6 and 2.8 heights long in these cells."""
-    own, other = (float(eddy(word, over=0.05, time=12.0)["length"]) for word in LENGTHS)
-    assert own > 1.8 * other > 4.0
+    """That of channels which become 1.2 times as deep has 6.28 heights (Le, Moin & Kim 1997)."""
+    own, other = eddy("shear layer"), eddy("Li-Sawamoto")
+    assert own > 1.8 * other > 4.0 and own > 5.0

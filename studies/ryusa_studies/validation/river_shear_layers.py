@@ -1,7 +1,4 @@
-"""Shear layers along a row: how fast a jet along the floor widens, how long the eddy behind a step is.
-
-Both with the mixing length that knows them and with that of streams (design/0030).
-"""
+"""A jet along a floor below deep still water: how fast it widens, and what speed is left (design/0030)."""
 
 from collections.abc import Sequence
 
@@ -23,8 +20,6 @@ THICK, DEEP, LONG = 0.02, 0.5, 1.6  # of the jet, the water, the row [m]
 WITHIN = 0.3, 1.0  # where it widens freely: beyond its core, before the end turns it [m]
 LENGTHS = ("shear layer", "Li-Sawamoto")
 TIMES = 40  # at which it is looked at; the later half counts
-STEP, OVER, SPEED = 0.05, 0.25, 0.25  # height of a step, depth over it [m], mean speed there [m/s]
-BEFORE, BEHIND = 0.3, 1.0  # row before the step and behind it [m]
 
 
 def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, Floats]:
@@ -51,35 +46,6 @@ def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, 
     return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
 
 
-def eddy(mixing: str, over: float = OVER, cell: float = 0.005, time: float = 30.0) -> dict[str, Floats]:
-    """Water `over` [m] deep flows over a step down.
-
-    Returns
-    -------
-    Over the way `x` behind the step in its heights [-]: `low`, speed in the lowest cell over the mean speed
-    over the step [-]; `length` of the eddy, from the step to where this turns, in heights [-].
-    """
-    deep = STEP + over
-    n, dx = round(1.5 * deep / cell), 2.0 * cell
-    c = Column(
-        z_low=0.0, dz=cell, n=n, depth=deep, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.005,
-        mixing=Mixing.of(mixing), surface=SurfaceRule.VOLUME,
-    )  # fmt: skip
-    segments = round((BEFORE + BEHIND) / dx)
-    before = (np.arange(segments) + 0.5) * dx < BEFORE
-    inlet = RowEnd(EndKind.DISCHARGE, discharge=SPEED * over)
-    row = ColumnRow(
-        c, dx, np.zeros(segments), G, inlet, RowEnd(EndKind.LEVEL, level=deep),
-        solid=np.where(before, round(STEP / cell), 0), pressure=Pressure.FULL,
-    )  # fmt: skip
-    mean, behind = _mean(row, deep, time), row.x_station > BEFORE + 0.5 * dx
-    x, low = (row.x_station[behind] - BEFORE) / STEP, mean[behind, 0] / SPEED
-    back = np.flatnonzero(low < 0.0)
-    k = int(back[-1]) if len(back) else 0
-    length = float(np.interp(0.0, low[k : k + 2], x[k : k + 2])) if len(back) else 0.0
-    return {"x": x, "low": low, "length": np.array(length)}
-
-
 def _mean(row: ColumnRow, level: float, time: float) -> Floats:
     """Speeds [m/s] after a start at rest up to a level [m], mean of the later half of a time [s]."""
     now, arrays = row_at_rest(row, np.full(len(row.bottom), level)), RowArrays.of(row)
@@ -98,13 +64,13 @@ def _half(z: Floats, u: Floats) -> float:
 
 
 def tasks() -> Sequence[Task]:
-    """Three minutes."""
-    return [calculation(how, mixing=one, seconds=15.0) for how in (widening, eddy) for one in LENGTHS]
+    """Half a minute."""
+    return [calculation(widening, mixing=one, seconds=20.0) for one in LENGTHS]
 
 
 def judge(found: Found) -> Sequence[Finding]:
-    """Beside the rate of plane wall jets, and eddies behind steps."""
-    *runs, behind, elsewhere = (found[one] for one in tasks())
+    """Beside the rate of plane wall jets."""
+    runs = [found[one] for one in tasks()]
     own, other = runs
     x = own["x"]
     line = float(own["width"].mean()) + 0.073 * (x - float(x.mean()))
@@ -114,8 +80,4 @@ def judge(found: Found) -> Sequence[Finding]:
         {"rate": abs(float(own["rate"]) / 0.073 - 1.0)}, other=float(other["rate"]),
         at=float(x[-1]), left=float(own["speed"][-1]), rest=float(other["speed"][-1]),
     )  # fmt: skip
-    eddies = DECLARED["step"].finding(
-        [Curve(word, run["x"], run["low"]) for word, run in zip(LENGTHS, (behind, elsewhere), strict=True)],
-        [], {"length": float(behind["length"])}, other=float(elsewhere["length"]),
-    )  # fmt: skip
-    return [jet, eddies]
+    return [jet]
