@@ -1,7 +1,9 @@
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from ryusa.cases.questions import QUESTIONS
 from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.cli import app
 from ryusa.errors import CaseError, ResultsError
+from ryusa.laws.families import Pressure
 from ryusa.measure import surface
 from ryusa.measure.pooled import mean_of_runs
 from ryusa.measure.statistics import Average
@@ -105,6 +108,14 @@ def test_what_is_not_covered_follows_from_the_case(heaps, weir):
     dry, wet = " ".join(not_covered(heaps)), " ".join(not_covered([weir]))
     assert "Cohesion" in dry and "one plane" in dry and "jet" not in dry and "dam" not in dry
     assert "jet" in wet and "blow of a bore" in wet and "Cohesion" not in wet and "spheres" not in wet
+    row = replace(weir.row.row, dams=tuple(replace(one, aerated=True) for one in weir.row.row.dams))
+    own = replace(row, pressure=Pressure.FULL)
+    grains = SimpleNamespace(
+        n_grain=3, d=np.full(3, 0.01), d_mean=0.01, period=weir.scene.period, plane_case=False
+    )
+    over = SimpleNamespace(case=weir.case, scene=grains, row=SimpleNamespace(row=own), frames=weir.frames)
+    said = " ".join(not_covered([over]))
+    assert "a jet digs in the end" in said and "breakers" in said and "air under" not in said
 
 
 def test_a_question_whose_measures_a_run_does_not_allow_has_no_answer(heaps):

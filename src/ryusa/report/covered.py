@@ -79,14 +79,17 @@ def not_covered(runs: Sequence[Results]) -> list[str]:
     d = scene.d_mean if grains else math.nan
     dry = grains and not water
     dams = row is not None and any(not one.porous for one in row.row.dams)
+    aerated = row is not None and any(one.aerated for one in row.row.dams)
     across = scene.period[1]
     if row is not None and not math.isfinite(across):
         across = float(water["row"].get("width") or math.inf)
     said = {
         "Scour under a jet, flow round a pier, short waves: the water is hydrostatic.":
         row is not None and row.row.hydrostatic,
-        "Flow round a pier, air under a nappe, breakers: the surface has one height at each place.":
-        row is not None and not row.row.hydrostatic,
+        f"Flow round a pier, {'' if aerated else 'air under a nappe, '}breakers: the surface has one height "
+        "at each place.": row is not None and not row.row.hydrostatic,
+        "How deep a jet digs in the end: in a row it digs a fifth of what formulae expect.":
+        aerated and grains,
         "The blow of a bore on the dam, uplift, friction of the water.": dams,
         "Whether the dam stands the load.": dams,
         f"Peaks shorter than {case['record']['frames']:g} s, the time between two records.": dams and grains,
@@ -166,7 +169,7 @@ def _water(first: Results, explained: dict[str, ExplainedValue]) -> str:
     water = first.case.get("water")
     if not water:
         return "none (dry)"
-    names = ("discharge", "critical depth") if first.row is not None else ("depth", "tau_star")
+    names = ("discharge", "hydrograph", "critical depth") if first.row is not None else ("depth", "tau_star")
     words = {"tau_star": "Shields number of the case"}
     said = [f"{words.get(name, name)} {explained[name].shown}" for name in names if name in explained]
     if "ends" in explained:
