@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ryusa.laws import turbulence, water
+from ryusa.laws import side_walls, turbulence, water
 
 KAPPA = 0.41
 heights = st.floats(1e-6, 0.1)
@@ -97,18 +97,18 @@ def test_the_gradient_of_the_log_law_equals_its_mean_between_two_heights(low, ra
 
 @given(re=st.floats(3e3, 1e7))
 def test_karman_prandtl_satisfies_its_equation_and_is_near_blasius(re):
-    f = turbulence.friction_karman_prandtl(re)
+    f = side_walls.friction_karman_prandtl(re)
     assert 1.0 / math.sqrt(f) == pytest.approx(2.0 * math.log10(re * math.sqrt(f)) - 0.8, rel=1e-12)
     if re < 1e5:
-        assert turbulence.friction_blasius(re) == pytest.approx(f, rel=0.04)
+        assert side_walls.friction_blasius(re) == pytest.approx(f, rel=0.04)
 
 
 def test_the_friction_factors_are_those_of_the_table():
     table = {4e3: 0.0399, 1e4: 0.0309, 1e5: 0.0180, 1e6: 0.0116, 1e7: 0.0081, 1e8: 0.0059}
     for re, f in table.items():
-        assert turbulence.friction_karman_prandtl(re) == pytest.approx(f, abs=6e-5)
+        assert side_walls.friction_karman_prandtl(re) == pytest.approx(f, abs=6e-5)
 
 
 @given(u=st.floats(-2.0, 2.0))
 def test_side_walls_slow_the_water_down(u):
-    assert turbulence.side_wall_drag(u, 0.03, 0.0065) * u <= 0.0
+    assert side_walls.side_wall_drag(u, 0.03, 0.0065) * u <= 0.0

@@ -35,10 +35,9 @@ from ryusa.laws.lift import (
 )
 from ryusa.laws.nonspherical import c_d_bagheri_bonadonna, c_d_ganser, c_d_haider_levenspiel
 from ryusa.laws.rolling import reduced_radius, rolling_arm_width
+from ryusa.laws.side_walls import friction_blasius, friction_karman_prandtl
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.laws.turbulence import (
-    friction_blasius,
-    friction_karman_prandtl,
     length_parabolic_between,
     length_prandtl,
     length_van_driest,

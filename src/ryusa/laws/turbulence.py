@@ -1,4 +1,4 @@
-"""Turbulence in the water column: mixing lengths, eddy viscosity, shear stress of bed and side walls."""
+"""Turbulence in the water column: mixing lengths, eddy viscosity, shear stress of the bed."""
 
 import math
 
@@ -37,8 +37,9 @@ def length_parabolic(z: float, depth: float, kappa: float) -> float:
     Notes
     -----
     Source: the free-surface option of YADE's HydroForceEngine (Maurin et al. 2015), which cites Nezu &
-    Nakagawa 1993 (not consulted). With a stress that falls linearly to the surface its eddy viscosity is
-    kappa u_star z (1 - z/depth), and the logarithmic law holds over the whole depth.
+    Nakagawa 1993, Turbulence in Open-Channel Flows (not consulted). With a stress that decreases linearly to
+    the surface it gives the eddy viscosity kappa u_star z (1 - z/depth) and the logarithmic law over the
+    whole depth.
 
     Examples
     --------
@@ -161,8 +162,11 @@ def length_pore_egashira(phi: float, d: float, k_f: float) -> float:
 
     Examples
     --------
-    >>> round(length_pore_egashira(0.3, 1.0, 0.16) ** 2, 3)
-    0.197
+    >>> (
+    ...     round(length_pore_egashira(0.3, 1.0, 0.16) ** 2, 3),
+    ...     round(length_pore_egashira(0.5, 1.0, 0.16) ** 2, 3),
+    ... )
+    (0.197, 0.08)
     """
     return d * math.sqrt(pore_factor(phi, k_f))
 
@@ -179,7 +183,8 @@ def eddy_viscosity(length: float, shear: float, eps: float) -> float:
 
     Notes
     -----
-    Source: Prandtl 1925; the factor eps as in Maurin et al. 2015, taken from the code of YADE.
+    Source: Prandtl 1925 for clear water; the factor eps as in Revil-Baudard & Chauchat 2013 and Maurin et al.
+    2015, taken from the code of YADE.
 
     Examples
     --------
@@ -225,6 +230,8 @@ def u_star_smooth(u_x: float, z: float, nu: float) -> float:
 
     Examples
     --------
+    >>> round(u_star_smooth(0.01, 1.0e-4, 1.0e-6), 12)  # z+ = 1
+    0.01
     >>> round(u_star_smooth(2.223, 0.01, 1.0e-6), 4)  # z+ = 1000: u+ = 22.23
     0.1
     """
@@ -340,81 +347,3 @@ def speed_mean_rough(depth: float, u_star: float, k_rough: float) -> float:
     if depth <= zero:
         return 0.0 * u_star
     return u_star * 5.75 / math.log(10.0) * (math.log(depth / zero) - 1.0 + zero / depth)
-
-
-@law
-def friction_gap_laminar(re: float) -> float:
-    """Friction factor of laminar flow between two walls [-], 96/Re, Re with the hydraulic diameter.
-
-    Notes
-    -----
-    Source: plane Poiseuille flow; the hydraulic diameter of a gap of width b is 2 b.
-
-    Examples
-    --------
-    >>> friction_gap_laminar(960.0)
-    0.1
-    """
-    return 96.0 / re
-
-
-@law
-def friction_blasius(re: float) -> float:
-    """Friction factor (Darcy-Weisbach) of a smooth wall [-], 0.3164 Re**-0.25.
-
-    Notes
-    -----
-    Source: Blasius 1913, for Re = u D/nu between about 4e3 and 1e5, D the hydraulic diameter; one of the two
-    side-wall options of YADE's HydroForceEngine, where Re contains the width instead of twice the width.
-
-    Examples
-    --------
-    >>> round(friction_blasius(1.0e4), 5)
-    0.03164
-    """
-    return 0.3164 / re**0.25
-
-
-@law
-def friction_karman_prandtl(re: float) -> float:
-    """Friction factor (Darcy-Weisbach) of a smooth wall [-], 1/sqrt(f) = 2 log10(Re sqrt(f)) - 0.8.
-
-    Notes
-    -----
-    Source: Prandtl 1935 (with von Karman), as tabulated in White, Fluid Mechanics, Eq. (6.54): 0.0399 at
-    Re = 4000, 0.0180 at 1e5. Re = u D/nu with the hydraulic diameter D. Newton's method for x = 1/sqrt(f).
-
-    Examples
-    --------
-    >>> round(friction_karman_prandtl(4000.0), 4), round(friction_karman_prandtl(1.0e5), 4)
-    (0.0399, 0.018)
-    """
-    x = re / (2.0 + re) * 6.0  # first guess: near Re/2.51 at small Re, 5 to 15 at large Re
-    for _ in range(40):
-        change = (2.0 * math.log10(re / x) - 0.8 - x) / (1.0 + 2.0 / (math.log(10.0) * x))
-        x = max(x + change, 0.1 * x)
-        if abs(change) <= 1.0e-15 * x:
-            break
-    return 1.0 / (x * x)
-
-
-@law
-def side_wall_drag(u_x: float, friction: float, width: float) -> float:
-    """Deceleration of the water by the two side walls of a flume [m/s2], f |u| u/(4 width), opposite to u_x.
-
-    Parameters
-    ----------
-    u_x : water speed [m/s].
-    friction : Darcy-Weisbach friction factor f [-].
-    width : distance of the walls [m], > 0.
-
-    Notes
-    -----
-    Source: the stress f rho u**2/8 on two walls, per mass of water between them; as in Maurin et al. 2015.
-
-    Examples
-    --------
-    >>> round(side_wall_drag(0.5, 0.03, 0.0065), 6)  # 0.03 * 0.25 / 0.026
-    -0.288462
-    """
-    return -friction * abs(u_x) * u_x / (4.0 * width)

@@ -11,13 +11,12 @@ from ryusa.laws.dispatch import (
     wall_stress,
 )
 from ryusa.laws.families import BedKind, Mixing
+from ryusa.laws.side_walls import friction_gap_laminar, side_wall_drag
 from ryusa.laws.turbulence import (
-    friction_gap_laminar,
     height_between,
     length_growth_li_sawamoto,
     length_pore_egashira,
     length_shear_layer,
-    side_wall_drag,
 )
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel

@@ -39,21 +39,15 @@ def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, 
     inlet = RowEnd(EndKind.DISCHARGE, discharge=THICK, profile=profile)
     segments, level = round(LONG / dx), RowEnd(EndKind.LEVEL, level=DEEP)
     row = ColumnRow(c, dx, np.zeros(segments), G, inlet, level, pressure=Pressure.FULL)
-    mean = _mean(row, DEEP, time)
-    inside = np.flatnonzero((row.x_station > WITHIN[0]) & (row.x_station < WITHIN[1]))
-    x, speed = row.x_station[inside], mean[inside].max(axis=1)
-    width = np.array([_half(c.z, one) for one in mean[inside]])
-    return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
-
-
-def _mean(row: ColumnRow, level: float, time: float) -> Floats:
-    """Speeds [m/s] after a start at rest up to a level [m], mean of the later half of a time [s]."""
-    now, arrays = row_at_rest(row, np.full(len(row.bottom), level)), RowArrays.of(row)
+    now, arrays = row_at_rest(row, np.full(segments, DEEP)), RowArrays.of(row)
     mean = np.zeros_like(now.u)
     for k in range(TIMES):
         now = advance_row(row, now, time / TIMES, arrays=arrays)
         mean += now.u * (2 * k >= TIMES) / (TIMES / 2)
-    return mean
+    inside = np.flatnonzero((row.x_station > WITHIN[0]) & (row.x_station < WITHIN[1]))
+    x, speed = row.x_station[inside], mean[inside].max(axis=1)
+    width = np.array([_half(c.z, one) for one in mean[inside]])
+    return {"x": x, "width": width, "speed": speed, "rate": np.array(np.polyfit(x, width, 1)[0])}
 
 
 def _half(z: Floats, u: Floats) -> float:
@@ -74,10 +68,10 @@ def judge(found: Found) -> Sequence[Finding]:
     own, other = runs
     x = own["x"]
     line = float(own["width"].mean()) + 0.073 * (x - float(x.mean()))
-    jet = DECLARED["wall-jet"].finding(
+    finding = DECLARED["wall-jet"].finding(
         [Curve(word, run["x"], 1e3 * run["width"]) for word, run in zip(LENGTHS, runs, strict=True)],
         [Curve("widens by 0.073", x, 1e3 * line)],
         {"rate": abs(float(own["rate"]) / 0.073 - 1.0)}, other=float(other["rate"]),
         at=float(x[-1]), left=float(own["speed"][-1]), rest=float(other["speed"][-1]),
     )  # fmt: skip
-    return [jet]
+    return [finding]

@@ -79,7 +79,7 @@ def nappe_rows(case: Case, plan: RowPlan, dam: RowDamSection, q: float, more: st
     way = way_of_nappe(case, plan, dam, q)
     rows = [number("water", f"nappe of '{dam.name}' lands{more}", way, "cm", origin)]
     law = case.column.mixing_length or Mixing.LI_SAWAMOTO.word  # as `choices`; a bed is that of a stream
-    at = (dam_span(plan, dam)[1] + 0.5) * plan.dx + plan.x_low + way
+    at = plan.x_low + dam_span(plan, dam)[1] * plan.dx + way
     if law == Mixing.LI_SAWAMOTO.word and bed_over(case, np.array([at]))[0] > 0.0:
         origin = "water.column.mixing_length: by 'shear layer' a jet stays along the bed and digs"
         text = f"by {law} it spreads over its pool at once"
