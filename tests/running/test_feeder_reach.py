@@ -150,7 +150,7 @@ def test_a_bed_line_is_that_over_which_water_enters(place: Path) -> None:
     column = run.row.row.column
     phi = np.concatenate([run.row.phi[::5].reshape(-1, column.n), np.zeros((1, column.n))])
     phi = np.concatenate([phi, np.full((1, column.n), 0.5)])
-    by_kernel = [bed_thickness(parameters_of(column), np.ascontiguousarray(one)) for one in phi]
+    by_kernel = [bed_thickness(parameters_of(column), 0, np.ascontiguousarray(one)) for one in phi]
     np.testing.assert_allclose(bed_lines(phi, column), by_kernel, rtol=1e-12)
     assert supplied(run).bed == pytest.approx(np.mean([one for one in bed_lines(
         run.row.phi[10:].reshape(-1, column.n), column)]), rel=1e-12)  # fmt: skip

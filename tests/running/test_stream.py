@@ -176,7 +176,7 @@ def test_water_enters_over_the_bed_in_the_first_segment_and_resumes_with_the_sam
     row = found.row
     assert row is not None
     p = parameters_of(row.row.column)
-    thick = [bed_thickness(p, np.ascontiguousarray(phi[0])) for phi in row.phi]
+    thick = [bed_thickness(p, 0, np.ascontiguousarray(phi[0])) for phi in row.phi]
     assert min(thick) > 0.012
     for u, bed in zip(row.u[1:], thick[1:], strict=True):
         lowest = int(np.flatnonzero(u[0])[0])

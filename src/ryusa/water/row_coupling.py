@@ -212,7 +212,8 @@ class RowCoupling(Fluid):
 
         It is that at the last exchange.
         """
-        return bed_thickness(parameters_of(self.row.column), np.ascontiguousarray(self.phi[0]))
+        solid = int(self.row.solid_cells()[self.row.inner.start])
+        return bed_thickness(parameters_of(self.row.column), solid, np.ascontiguousarray(self.phi[0]))
 
     def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
         """Raise a `GrainLost` for a grain beyond the ends of the row; parameters as of `Fluid.refuse_lost`.
@@ -314,7 +315,7 @@ class RowCoupling(Fluid):
         speed = np.abs(self.state.u)
         taken = row.cells_of_dams()
         for i, phi in enumerate(np.ascontiguousarray(self.phi), start=row.inner.start):
-            thick = bed_thickness(p, phi)
+            thick = bed_thickness(p, 0, phi)
             if taken[i] or not thick >= 2.0 * p.d:
                 continue
             lower = speed[(left == i) | (right == i), : math.ceil(0.5 * thick / p.dz)]

@@ -62,7 +62,8 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     -----
     Where the bottom falls and normal flow is supercritical, water enters at normal depth unless a depth
     is given; else the row finds the depth. A developed profile is that of steady flow as deep as this, as
-    normal flow, or as the row at its start. Depth and profile count from the bed of grains where one lies.
+    normal flow, or as the row at its start. Depth and profile count from the dam or
+    the bed of grains where one lies.
     """
     end = row.upstream
     if end is None or end.kind is not EndKind.DISCHARGE or end.discharge == 0.0:
@@ -79,7 +80,7 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     if not end.developed:
         return replace(row, upstream=replace(end, depth=float(depth)))
     assert row.start is not None
-    first = float(row.start[0] - row.bottom[0])
+    first = float(row.start[0] - row.bottom[0]) - int(row.solid_cells()[row.inner.start]) * row.column.dz
     there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))
     flow, _ = steady(
         replace(row.column, g_x=0.0, depth=there, drive=Drive.DISCHARGE, discharge=end.discharge)

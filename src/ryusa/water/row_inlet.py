@@ -11,24 +11,24 @@ LOOSE = 1.0 / 3.0  # of the packed concentration, from which grains on the botto
 
 
 @kernel
-def bed_thickness(p: ColumnParameters, phi: Floats) -> float:
-    """Thickness of the bed of grains that lies on the bottom of a segment [m]; 0 without one.
+def bed_thickness(p: ColumnParameters, first: int, phi: Floats) -> float:
+    """Thickness of the bed that lies on the bottom of a segment [m]: solid cells, and grains on them.
 
     Notes
     -----
-    It reaches from the bottom up to where the concentration phi [-], shape (n,), averaged over the height of
-    a grain, falls below LOOSE times that of a bed at rest; thin layers with less do not end it, up to the
-    height of a grain.
+    It has the `first` cells, which are solid, and reaches up to where the concentration phi [-], shape (n,),
+    averaged over the height of a grain, falls below LOOSE times that of a bed at rest; thin layers with less
+    do not end it, up to the height of a grain.
     """
     mean, least = averaged(p.dz, p.d, p.n - 1, phi), LOOSE * p.phi_max
-    top = -1
-    for k in range(p.n):
+    top = first - 1
+    for k in range(first, p.n):
         if mean[k] >= least:
             top = k
         elif not (k - top) * p.dz <= p.d:
             break
-    if top < 0:
-        return 0.0
+    if top < first:
+        return first * p.dz
     if top + 1 == p.n:
         return p.n * p.dz
     return (top + 0.5 + (mean[top] - least) / (mean[top] - mean[top + 1])) * p.dz
@@ -56,8 +56,8 @@ def depth_over_bed(bed: float, depth: float, given: bool, q: float, g_z: float) 
 
 @kernel
 def inflow(
-    p: ColumnParameters, q: float, profile: Floats, phi: Floats, content: Floats, wet: Floats, u: Floats,
-    flux: Floats,
+    p: ColumnParameters, q: float, profile: Floats, first: int, phi: Floats, content: Floats, wet: Floats,
+    u: Floats, flux: Floats,
 ) -> None:  # fmt: skip
     """Speeds [m/s] and fluxes [m2/s] at the inlet, overwritten, so that the discharge is kept.
 
@@ -65,6 +65,7 @@ def inflow(
     ----------
     q : discharge per width [m2/s].
     profile : speeds over height to any scale, shape (n,); over a bed its height counts from there.
+    first : number of solid cells of the first segment.
     phi, content, wet : concentration of grains [-], water [m] and wet thickness [m] of the cells beyond the
         end, shape (n,).
 
@@ -72,7 +73,7 @@ def inflow(
     -----
     Nothing enters within the bed: its pores take water from above, as their pressure gradient asks.
     """
-    bed, total = bed_thickness(p, phi), 0.0
+    bed, total = bed_thickness(p, first, phi), 0.0
     for k in range(p.n):
         u[k] = profile[k]
         if bed > 0.0:

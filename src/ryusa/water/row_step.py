@@ -56,7 +56,9 @@ def fill_ends(p: ColumnParameters, ends: RowEnds, shape: RowShape, phi: Floats, 
         depth = ends.depth[e]
         if ends.rule[e] == SAME_DEPTH:
             depth = water.surface[ends.beside[e]] - p.z_low
-        bed = bed_thickness(p, phi[i]) if shape.kind[shape.east[i]] == INFLOW else 0.0
+        bed = 0.0
+        if shape.kind[shape.east[i]] == INFLOW:
+            bed = bed_thickness(p, int(shape.first[i]), phi[i])
         if bed > 0.0:
             depth = depth_over_bed(bed, float(depth), ends.rule[e] != SAME_DEPTH, ends.discharge, shape.g_z)
         water.surface[i] = p.z_low + depth
@@ -91,8 +93,8 @@ def fluxes_along(
         left, right = shape.left[j], shape.right[j]
         if shape.kind[j] != OPEN:
             inflow(
-                p, ends.discharge, ends.shape, phi[left], water.content[left], water.wet[left], water.u[j],
-                flux[j],
+                p, ends.discharge, ends.shape, int(shape.first[left]), phi[left], water.content[left],
+                water.wet[left], water.u[j], flux[j],
             )  # fmt: skip
             continue
         for k in range(max(shape.first[left], shape.first[right]), p.n):
