@@ -4,15 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import erf
 
 from ryusa.laws.families import BedKind, Mixing, Pressure
-from ryusa.laws.turbulence import length_pore_egashira, length_shear_layer
-from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.laws.turbulence import length_jet, length_mixing_layer, length_pore_egashira
+from ryusa.model.row import ColumnRow
 from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import bound_by_layers
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa_studies.validation.river_pressure import G, water
-from ryusa_studies.validation.river_shear_layers import widening
+from ryusa_studies.validation.river_shear_layers import eddy, widening
 
 DZ, N = 0.002, 40
 Z = (np.arange(N) + 0.5) * DZ
@@ -28,20 +29,35 @@ def bounded(u: np.ndarray, mixing: Mixing = Mixing.SHEAR_LAYER, phi: float = 0.0
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_above_a_jet_below_still_water_the_length_goes_with_its_half_width(way):
+def test_above_a_jet_below_still_water_the_length_goes_with_its_thickness(way):
     width, at = 0.01, 5
     jet = np.where(np.arange(N) < at, 0.8, np.cosh(0.881374 * (Z - Z[at]) / width) ** -2.0)
     found = bounded(way * jet)
-    assert found[at + 1 : -1] == pytest.approx(length_shear_layer(width), rel=5e-3)
     steepest = np.abs(np.diff(jet)[at:]).max() / DZ
+    assert found[at + 1 : -1] == pytest.approx(length_jet(1.0 / steepest), rel=5e-3)
     assert found[at + 1] ** 2 * steepest == pytest.approx(0.0235 * width, rel=0.06)  # 0.073/(4 0.881**2)
 
 
-def test_below_a_stream_over_still_water_too():
-    width, top = 0.015, N - 1
-    layer = np.cosh(0.881374 * (Z - Z[top]) / width) ** -2.0
+@pytest.mark.parametrize("depth", [0.04, 0.06])  # of the middle of the layer: what lies above it counts not
+def test_below_a_stream_over_still_water_too(depth):
+    wide = 0.012 * 11.0 / np.sqrt(np.pi)  # way from the edge, of a layer 1.2 cm thick
+    layer = 0.5 * (1.0 + erf(11.0 * (Z + depth - N * DZ) / wide))
+    steepest = np.diff(layer).max() / DZ
+    assert 1.0 / steepest == pytest.approx(0.012, rel=0.02)
     found = bounded(layer)
-    assert found[1:top] == pytest.approx(length_shear_layer(width), rel=0.02)
+    assert found[1 : int(layer.argmax())] == pytest.approx(length_mixing_layer(0.012), rel=0.03)
+    at = int(np.diff(layer).argmax()) + 1
+    assert found[at] ** 2 * steepest == pytest.approx(wide / (4.0 * 11.0**2), rel=0.06)
+
+
+def test_along_a_wall_the_length_is_that_of_the_wall():
+    """At most half of the speed is lost above the lowest cell, or above a bed of grains."""
+    stream = 0.5 + 0.5 * (np.arange(N) / (N - 1.0)) ** 0.3
+    assert (bounded(stream) == LONG).all()
+    p = parameters_of(replace(water(DZ, N, N * DZ, nu=1e-6), mixing=Mixing.SHEAR_LAYER))
+    phi, square = np.where(np.arange(N) < 10, 0.6, 0.0), np.full(N + 1, LONG**2)
+    bound_by_layers(p, N - 1, phi, Z, np.where(phi > 0.0, 0.0, stream), square)
+    assert (square == LONG**2).all()
 
 
 def test_grains_take_their_share_of_it_and_the_length_of_the_pores_stays():
@@ -91,28 +107,7 @@ def test_a_jet_along_the_bed_widens_as_wall_jets_do():
     assert own["speed"][-1] > 1.2 * other["speed"][-1]
 
 
-def eddy(mixing: str, step: float = 0.05, cell: float = 0.005) -> float:
-    """Length of the eddy behind a step down to twice the depth, in heights of the step."""
-    deep, dx = 2.0 * step, 2.0 * cell
-    column = replace(
-        water(cell, 2 * round(deep / cell), deep, nu=1e-6), bed=BedKind.ROUGH, k_rough=0.005,
-        mixing=Mixing.of(mixing),
-    )  # fmt: skip
-    before = round(0.3 / dx)
-    row = ColumnRow(
-        column, dx, np.zeros(before + 100), G, RowEnd(EndKind.DISCHARGE, discharge=0.25 * step),
-        RowEnd(EndKind.LEVEL, level=deep), pressure=Pressure.FULL,
-        solid=np.where(np.arange(before + 100) < before, round(step / cell), 0),
-    )  # fmt: skip
-    now, mean = row_at_rest(row, np.full(before + 100, deep)), 0.0
-    for _ in range(12):
-        now = advance_row(row, now, 1.0)
-        mean = mean + now.u[:, 0] * (now.t > 6.0)
-    back = np.flatnonzero((row.x_station > 0.3 + 0.5 * dx) & (mean < 0.0))
-    return float(row.x_station[back[-1]] - 0.3) / step
-
-
-def test_the_eddy_behind_a_step_is_twice_as_long():
-    """That of channels which become 1.2 times as deep has 6.28 heights (Le, Moin & Kim 1997)."""
-    own, other = eddy("shear layer"), eddy("Li-Sawamoto")
-    assert own > 1.8 * other > 4.0 and own > 5.0
+def test_the_eddy_behind_a_step_is_longer():
+    """In cells twice as large as those of the gate."""
+    own, other = (eddy(word, cells=5, time=12.0)["length"] for word in ("shear layer", "Li-Sawamoto"))
+    assert own > 1.2 * other > 2.0

@@ -15,8 +15,9 @@ from ryusa.laws.side_walls import friction_gap_laminar, side_wall_drag
 from ryusa.laws.turbulence import (
     height_between,
     length_growth_li_sawamoto,
+    length_jet,
+    length_mixing_layer,
     length_pore_egashira,
-    length_shear_layer,
 )
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
@@ -25,6 +26,7 @@ NO_SLIP, SMOOTH, ROUGH, MOVING = numbers(
     __name__, BedKind.NO_SLIP, BedKind.SMOOTH, BedKind.ROUGH, BedKind.MOVING
 )
 LAMINAR = int(Mixing.LAMINAR)
+LAID = 1.0 / 3.0  # of the packed concentration, from which grains are a bed
 RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 
@@ -124,7 +126,7 @@ def mixing_lengths(
 
 @kernel
 def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floats, square: Floats) -> None:
-    """Bound the mixing length by the widths of the layers over which the highest speed is lost.
+    """Bound the mixing length by the thickness of the layers over which the highest speed is lost.
 
     Parameters
     ----------
@@ -135,7 +137,8 @@ def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floa
     Notes
     -----
     One layer reaches from the highest speed to the surface, above a jet along the bed, the other down to the
-    bed, as behind a step. Each bound counts by the share of the highest speed that is lost over it.
+    bed, a mixing layer as behind a step. The bound of the first counts by the share of the highest speed that
+    is lost over it, that of the second by how far this is above one half: along a wall less is lost.
     """
     if not length_of_layers(p.mixing):
         return
@@ -143,9 +146,12 @@ def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floa
     for k in range(1, m + 1):
         if abs(u[k]) > abs(u[at]):
             at = k
+    low = at  # down to a bed of grains, whose drag slows the water in their pores
+    while low > 0 and phi[low - 1] < LAID * p.phi_max:
+        low -= 1
     along = math.copysign(1.0, u[at])
     bound_by_layer(p, at, m, along, phi, z, u, square)
-    bound_by_layer(p, at, 0, along, phi, z, u, square)
+    bound_by_layer(p, at, low, along, phi, z, u, square)
 
 
 @kernel
@@ -153,20 +159,20 @@ def bound_by_layer(
     p: ColumnParameters, at: int, end: int, along: float, phi: Floats, z: Floats, u: Floats, square: Floats
 ) -> None:
     """The same at the faces between the cell of the highest speed and that at the end of a layer."""
-    way = 1 if end > at else -1
-    highest, least = along * u[at], along * u[at]
-    for k in range(at, end + way, way):
+    above = end > at
+    way = 1 if above else -1
+    highest, least, steepest = along * u[at], along * u[at], 0.0
+    for k in range(at + way, end + way, way):
         least = min(least, along * u[k])
+        steepest = max(steepest, along * (u[k - way] - u[k]) / abs(z[k] - z[k - way]))
     fall = highest - least
     if not fall > 0.0:
         return
-    half, width = highest - 0.5 * fall, abs(z[end] - z[at])
-    for k in range(at + way, end + way, way):
-        here, before = along * u[k], along * u[k - way]
-        if here <= half:
-            width = abs(z[k] - z[at]) - abs(z[k] - z[k - way]) * (half - here) / (before - here)
-            break
-    most, part = length_shear_layer(width), min(fall / highest, 1.0)
+    part = min(fall / highest, 1.0)
+    if above:
+        most = length_jet(fall / steepest)
+    else:
+        most, part = length_mixing_layer(fall / steepest), max(2.0 * part - 1.0, 0.0)
     for f in range(min(at, end) + 1, max(at, end) + 1):
         share = 0.5 * (phi[f - 1] + phi[f])
         length, bound = math.sqrt(square[f]), math.sqrt(1.0 - share) * most

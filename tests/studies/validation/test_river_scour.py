@@ -23,10 +23,13 @@ def test_the_mean_depth_of_the_last_seconds_is_judged(ratio, outcome):
     assert trial.found.value == pytest.approx(ratio + 0.001, abs=1e-9)
 
 
-@pytest.mark.parametrize(("rate", "outcome"), [(0.07, Outcome.HOLDS), (0.1, Outcome.FAILS)])
-def test_a_jet_is_judged_by_the_length_of_shear_layers(rate, outcome):
+@pytest.mark.parametrize(("rate", "jet"), [(0.07, Outcome.HOLDS), (0.1, Outcome.FAILS)])
+@pytest.mark.parametrize(
+    ("length", "eddy"), [(4.6, Outcome.FAILS), (4.8, Outcome.HOLDS), (7.9, Outcome.FAILS)]
+)
+def test_jet_and_eddy_are_judged_by_the_length_of_shear_layers(rate, jet, length, eddy):
     x = np.linspace(0.3, 1.0, 8)
-    jet = {"x": x, "width": 0.02 + rate * x, "speed": 1.0 - 0.4 * x, "rate": np.array(rate)}
-    found = dict(zip(layers.tasks(), (jet, {**jet, "rate": np.array(9.0)}), strict=True))
-    (finding,) = layers.judge(found)
-    assert finding.outcome is outcome
+    own = {"x": x, "width": 0.02 + rate * x, "speed": 1.0 - 0.4 * x, "rate": np.array(rate)}
+    lengths = ({"length": np.array(one)} for one in (6.28, length, 6.28))
+    found = dict(zip(layers.tasks(), (own, {**own, "rate": np.array(9.0)}, *lengths), strict=True))
+    assert [one.outcome for one in layers.judge(found)] == [jet, eddy]
