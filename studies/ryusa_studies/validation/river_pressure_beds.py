@@ -13,7 +13,6 @@ from ryusa_studies.validation import river_dam as dam
 from ryusa_studies.validation import river_dam_break as over_bed
 from ryusa_studies.validation import river_delta as delta
 from ryusa_studies.validation import river_overload as overload
-from ryusa_studies.validation import river_scour as scour
 
 FULL = {"water.row.pressure": "full"}
 UNDER = ", with a pressure of its own"
@@ -30,14 +29,11 @@ def tasks() -> Sequence[Task]:
         *(dam.even_bed(*one) for one in dam.LOW.beds),
         *(one for seed in ONE for one in (delta.delta(seed, FULL), delta.pile(seed))),
         *(overload.bed(extra, seed, FULL) for seed in ONE for extra in (True, False)),
-        *scour.tasks(),
     ]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
-    """As the hydrostatic comparison does; scour has none."""
-    if one.case == scour.CASE:
-        return scour.measure(run, one)
+    """As the hydrostatic comparison does."""
     if one.case in dam.CASES:
         return dam.measure(run, one)
     return (overload if one.case == overload.CASE else delta).measure(run, one)
@@ -50,5 +46,4 @@ def judge(found: Found) -> Sequence[Finding]:
         dam.finding(found, dam.LOW, SHORT, FULL, UNDER),
         delta.finding(found, ONE, FULL, UNDER),
         overload.finding(found, ONE, FULL, UNDER),
-        *scour.judge(found),
     ]

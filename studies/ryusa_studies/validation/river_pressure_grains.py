@@ -18,11 +18,13 @@ from ryusa.model import Water
 from ryusa.model.arrays import Floats
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.model.scene import EventRule
-from ryusa.study import Finding, Found, Level, Plan, Task, calculation
+from ryusa.results import Results
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Task, calculation
 from ryusa.water.row import RowArrays, advance_row, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
 from ryusa_studies.validation import river_immersed as immersed
 from ryusa_studies.validation import river_pressure_beds as beds
+from ryusa_studies.validation import river_scour as scour
 from ryusa_studies.validation.declared import declared
 from ryusa_studies.validation.river_pressure import BOTH, WALLS, G, water
 
@@ -149,17 +151,25 @@ def _rising() -> Task:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Ten seconds, without seepage when quick; at the full level three hours more."""
-    every = [*_sinking(), *([] if plan.level is Level.QUICK else _seeping()), _rising()]
+    """Ten minutes, without seepage and scour ten seconds when quick; at the full level three hours more."""
+    every = [*_sinking(), _rising()]
+    if plan.level is Level.QUICK:
+        return every
+    every += [*_seeping(), *scour.tasks()]
     return [*every, *immersed.tasks(), *beds.tasks()] if plan.level is Level.FULL else every
 
 
-measure = beds.measure  # the other tasks are calculations
+def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
+    """Numbers of a scour or of a bed; the other tasks are calculations."""
+    return (scour if one.case == scour.CASE else beds).measure(run, one)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Each beside a closed form; columns under water by experiments; beds by the limits of others."""
-    every = [_borne(found), *([] if plan.level is Level.QUICK else [_seeps(found)]), _rises(found)]
+    every = [_borne(found), _rises(found)]
+    if plan.level is Level.QUICK:
+        return every
+    every += [_seeps(found), *scour.judge(found)]
     return [*every, *immersed.judge(found), *beds.judge(found)] if plan.level is Level.FULL else every
 
 

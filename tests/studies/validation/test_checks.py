@@ -31,9 +31,9 @@ def test_the_quick_level_takes_seconds():
     assert sum(one.cost() for one in works) < 260.0  # core seconds, by rule of thumb
 
 
-def test_the_standard_level_takes_an_hour_and_twenty_minutes_on_two_cores():
+def test_the_standard_level_takes_less_than_an_hour_and_a_half_on_two_cores():
     works = {one for name in NAMES for one in load(name).tasks(Plan(Level.STANDARD, (1, 2, 3)))}
-    assert sum(one.cost_by_rule() for one in works) < 2 * 80 * 60.0  # core seconds
+    assert sum(one.cost_by_rule() for one in works) < 2 * 85 * 60.0  # core seconds
 
 
 @pytest.mark.slow
