@@ -178,8 +178,7 @@ def test_keys_turn_shift_and_choose_as_the_mouse_does(viewer):
     for key, grain in (("g", 0), ("g", 1), ("Shift+G", 0), ("Shift+G", 2), ("g", 0)):
         viewer.keyboard.press(key)
         assert now(viewer, "picked") == grain
-    viewer.wait_for_timeout(100)
-    assert viewer.locator("[role=status]").inner_text().startswith("grain 0: d 2.00 mm")
+    viewer.locator("[role=status]").filter(has_text=re.compile("^grain 0: d 2.00 mm")).wait_for()
 
 
 def test_pictures_and_the_time_have_words(viewer):

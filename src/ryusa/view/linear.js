@@ -17,15 +17,15 @@ class Camera {
 
   get distance() { return this.half / Math.tan(Camera.ANGLE / 2); }
 
-  // Turn and shift so that a box fills the picture.
-  fit(low, high, aspect, azimuth = this.azimuth, elevation = this.elevation) {
+  // Turn and shift so that a box fills the picture, of which that share of the height is free.
+  fit(low, high, aspect, free, azimuth = this.azimuth, elevation = this.elevation) {
     Object.assign(this, { azimuth, elevation, target: low.map((l, k) => (l + high[k]) / 2) });
     const [right, up, back] = this.axes, near = Math.tan(Camera.ANGLE / 2);
     this.half = 1e-9;
     for (let corner = 0; corner < 8; corner++) {
       const at = minus([0, 1, 2].map((k) => (corner >> k & 1 ? high : low)[k]), this.target);
       const depth = this.flat ? 0 : near * dot(at, back);
-      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.2 * (Math.abs(dot(at, up)) + depth));
+      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.06 / free * (Math.abs(dot(at, up)) + depth));
     }
   }
 

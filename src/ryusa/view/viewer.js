@@ -25,7 +25,7 @@ class Viewer {
     holder.tabIndex = 0;
     holder.ariaLabel = `${data.title}: grains in motion; h lists the keys`;
     this.canvas = element("canvas", holder, { className: "grains", role: "img" });
-    const head = element("div", holder, { className: "head" });
+    const head = this.head = element("div", holder, { className: "head" });
     element(holder.tagName === "MAIN" ? "h1" : "strong", head, { className: "title" }, data.title);  // a report has its own heading
     element("div", head, { className: "about" }, this.about());
     this.chosen = element("div", head, { className: "chosen", role: "status" });
@@ -330,8 +330,10 @@ class Viewer {
   look(name) {
     this.following = false;
     const covered = this.data.flow ? 2 * SIDE / this.canvas.clientWidth : 0;  // by the profile, of a width of 2
-    this.camera.fit(this.low, this.high, this.aspect * (1 - covered / 2), ...VIEWS[name]);
-    this.camera.target = plus(this.camera.target, this.camera.axes[0], covered / 2 * this.aspect * this.camera.half);
+    const above = Math.min(2 * (this.head.offsetTop + this.head.offsetHeight) / this.canvas.clientHeight, 1);  // by the title, of a height of 2
+    this.camera.fit(this.low, this.high, this.aspect * (1 - covered / 2), 1 - above / 2, ...VIEWS[name]);
+    const [right, up] = this.camera.axes, { half } = this.camera;
+    this.camera.target = plus(plus(this.camera.target, right, covered / 2 * this.aspect * half), up, above / 2 * half);
     this.changed();
   }
 
