@@ -220,6 +220,26 @@ def test_a_very_long_title_is_cut_and_covers_no_grain(opened, three, monkeypatch
             assert box["x"] + box["width"] < WIDE
 
 
+@pytest.mark.parametrize("high", [240, 600])
+@pytest.mark.parametrize("key", ["1", "2", "3"])
+def test_the_whole_box_lies_below_the_title(opened, three, high, key):
+    page = opened(three, "low.html")
+    page.set_viewport_size({"width": WIDE, "height": high})
+    page.keyboard.press(key)
+    page.evaluate(
+        """() => {
+          window.one = ryusaViewers[0];
+          const corner = (c) => [0, 1, 2].map((k) => (c >> k & 1 ? one.high : one.low)[k]);
+          const all = [...Array(8).keys()].map((c) => one.camera.project(corner(c), one.aspect)[1]);
+          window.down = all.map((y) => (1 - y) / 2 * one.canvas.clientHeight);
+        }"""
+    )
+    top, bottom = page.evaluate("[Math.min(...down), Math.max(...down) - one.canvas.clientHeight]")
+    title = page.evaluate("one.head.offsetTop + one.head.offsetHeight")
+    assert top > title
+    assert bottom < 0.0
+
+
 def test_water_over_height_is_drawn(opened, saltation):
     page = opened(saltation, "water.html")
     assert page.is_visible(".profile")

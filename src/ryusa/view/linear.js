@@ -25,7 +25,8 @@ class Camera {
     for (let corner = 0; corner < 8; corner++) {
       const at = minus([0, 1, 2].map((k) => (corner >> k & 1 ? high : low)[k]), this.target);
       const depth = this.flat ? 0 : near * dot(at, back);
-      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.06 / free * (Math.abs(dot(at, up)) + depth));
+      const over = dot(at, up), tall = Math.max(over + (2 * free - 1) * depth, depth - over) / free;  // what is free lies below
+      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.06 * tall);
     }
   }
 

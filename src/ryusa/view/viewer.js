@@ -330,7 +330,8 @@ class Viewer {
   look(name) {
     this.following = false;
     const covered = this.data.flow ? 2 * SIDE / this.canvas.clientWidth : 0;  // by the profile, of a width of 2
-    const above = Math.min(2 * (this.head.offsetTop + this.head.offsetHeight) / this.canvas.clientHeight, 1);  // by the title, of a height of 2
+    const named = this.chosen.offsetTop || this.head.offsetHeight;  // what is said of a chosen grain lies below, and counts not
+    const above = Math.min(2 * (this.head.offsetTop + named) / (this.canvas.clientHeight || 1), 1);  // by the title, of a height of 2
     this.camera.fit(this.low, this.high, this.aspect * (1 - covered / 2), 1 - above / 2, ...VIEWS[name]);
     const [right, up] = this.camera.axes, { half } = this.camera;
     this.camera.target = plus(plus(this.camera.target, right, covered / 2 * this.aspect * half), up, above / 2 * half);
