@@ -5,6 +5,7 @@ import pytest
 import ryusa
 from ryusa.casefile import read_text
 from ryusa.casefile.row.values import critical_depth, highest_water, jumping, row_plan
+from ryusa.errors import CaseError
 from ryusa.laws.bore import conjugate_depth
 from ryusa.results import schema
 
@@ -110,3 +111,25 @@ RUNS = {
 def test_the_water_stays_below_the_top_of_the_cells(kind, tmp_path):
     run = ryusa.run(RUNS[kind], tmp_path / "run", progress=False)
     assert run.status == schema.COMPLETE
+
+
+def test_water_that_enters_over_a_dam_finds_room_over_its_crest():
+    step = """
+[[water.row.dams]]
+name = "step"
+begin = "0 m"
+end = "2 m"
+crest = "20 cm"
+"""
+    up = 'upstream = { end = "discharge", discharge = "0.03 m2/s", depth = "30 cm" }'
+    case = row(FLAT, ends=f'{up}\ndownstream = {{ end = "level", level = "5 cm" }}{step}')
+    plan = row_plan(case)
+    assert plan.n_cell * plan.cell > 0.5
+
+    ends = f'surface = [["0 m", "-1 cm"], ["6 m", "-1 cm"]]\n{ENDS.format(q="0.03", down=FREE)}'
+    dry = CASE.format(bottom=FLAT, ends=ends + "{}", depth="-", time="4 s", slope="").replace(
+        'depth = "-"\n', ""
+    )
+    with pytest.raises(CaseError, match="the first segment is dry"):
+        read_text(dry.replace("{}", ""))
+    read_text(dry.replace("{}", step))  # over the crest it enters at critical depth

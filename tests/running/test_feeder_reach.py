@@ -23,7 +23,7 @@ from ryusa.measure import discharge, passages, transport
 from ryusa.model.feeds import IN
 from ryusa.results import Results, schema
 from ryusa.water._kernel import parameters_of
-from ryusa.water.row_inlet import bed_thickness
+from ryusa.water.closures import bed_thickness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -150,7 +150,7 @@ def test_a_bed_line_is_that_over_which_water_enters(place: Path) -> None:
     column = run.row.row.column
     phi = np.concatenate([run.row.phi[::5].reshape(-1, column.n), np.zeros((1, column.n))])
     phi = np.concatenate([phi, np.full((1, column.n), 0.5)])
-    by_kernel = [bed_thickness(parameters_of(column), 0, np.ascontiguousarray(one)) for one in phi]
+    by_kernel = [bed_thickness(parameters_of(column), np.ascontiguousarray(one)) for one in phi]
     np.testing.assert_allclose(bed_lines(phi, column), by_kernel, rtol=1e-12)
     assert supplied(run).bed == pytest.approx(np.mean([one for one in bed_lines(
         run.row.phi[10:].reshape(-1, column.n), column)]), rel=1e-12)  # fmt: skip

@@ -29,8 +29,8 @@ from ryusa.report.contents import contents_of
 from ryusa.results import Results, schema
 from ryusa.units import quantity
 from ryusa.water._kernel import parameters_of
+from ryusa.water.closures import bed_thickness
 from ryusa.water.row_coupling import RowCoupling
-from ryusa.water.row_inlet import bed_thickness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -176,7 +176,7 @@ def test_water_enters_over_the_bed_in_the_first_segment_and_resumes_with_the_sam
     row = found.row
     assert row is not None
     p = parameters_of(row.row.column)
-    thick = [bed_thickness(p, 0, np.ascontiguousarray(phi[0])) for phi in row.phi]
+    thick = [bed_thickness(p, np.ascontiguousarray(phi[0])) for phi in row.phi]
     assert min(thick) > 0.012
     for u, bed in zip(row.u[1:], thick[1:], strict=True):
         lowest = int(np.flatnonzero(u[0])[0])

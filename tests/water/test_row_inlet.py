@@ -11,9 +11,9 @@ from ryusa.model import Column, ColumnRow
 from ryusa.model.row import EndKind, PorousSolid, RowEnd
 from ryusa.water import steady
 from ryusa.water._kernel import parameters_of
+from ryusa.water.closures import bed_thickness
 from ryusa.water.row import advance_row, row_at_rest
 from ryusa.water.row_coupling import with_inlet
-from ryusa.water.row_inlet import bed_thickness
 
 G, CELL, D, PACKED = 9.80665, 4e-3, 8e-3, 0.6
 DROP = RowEnd(EndKind.FREE_FALL)
@@ -39,18 +39,18 @@ def bed(cells: int, segments: int, n: int = 24) -> PorousSolid:
 
 def test_the_bed_ends_where_the_mean_over_a_grain_falls_below_a_third_of_packed():
     p, phi = parameters_of(column(0.1)), np.zeros(24)
-    assert bed_thickness(p, 0, phi) == 0.0
+    assert bed_thickness(p, phi) == 0.0
     phi[20:] = PACKED  # grains that fall are no bed
-    assert bed_thickness(p, 0, phi) == 0.0
+    assert bed_thickness(p, phi) == 0.0
     phi[20:], phi[:8] = 0.0, PACKED
     # means over two cells: 0.45 in the uppermost full one and 0.15 above it
-    assert bed_thickness(p, 0, phi) == pytest.approx((7.5 + 0.25 / 0.3) * CELL)
+    assert bed_thickness(p, phi) == pytest.approx((7.5 + 0.25 / 0.3) * CELL)
     phi[:8] = 0.28 / 0.6 * PACKED  # laid loose
-    assert bed_thickness(p, 0, phi) == pytest.approx(8 * CELL, abs=0.5 * CELL)
+    assert bed_thickness(p, phi) == pytest.approx(8 * CELL, abs=0.5 * CELL)
     phi[0] = phi[4] = 0.0  # layers of a lattice
-    assert bed_thickness(p, 0, phi) == pytest.approx(8 * CELL, abs=0.5 * CELL)
+    assert bed_thickness(p, phi) == pytest.approx(8 * CELL, abs=0.5 * CELL)
     phi[:] = PACKED
-    assert bed_thickness(p, 0, phi) == 24 * CELL
+    assert bed_thickness(p, phi) == 24 * CELL
 
 
 def test_water_enters_over_a_bed_at_normal_depth_and_not_within_it():
@@ -63,7 +63,7 @@ def test_water_enters_over_a_bed_at_normal_depth_and_not_within_it():
     normal, over = row.upstream.depth, steady(replace(c, depth=row.upstream.depth))[0]
     assert float(over.content @ over.u) == pytest.approx(q, rel=1e-6)
     now = advance_row(row, row_at_rest(row, start, matrix), 3.0, solid=matrix)
-    thick = bed_thickness(parameters_of(c), 0, matrix.phi[0])
+    thick = bed_thickness(parameters_of(c), matrix.phi[0])
     assert thick == pytest.approx(cells * CELL, rel=0.05)
     assert now.surface[0] == pytest.approx(thick + normal)
     flux = now.content[0] * now.u[0]
@@ -80,19 +80,22 @@ def test_water_enters_over_a_bed_at_normal_depth_and_not_within_it():
 
 @pytest.mark.parametrize("pressure", list(Pressure))
 @pytest.mark.parametrize("slope", [0.1, 0.001])  # swift water, and tranquil
-def test_a_dam_at_the_inlet_is_a_floor(pressure: Pressure, slope: float):
+@pytest.mark.parametrize("laid", [0, 2])  # cells of grains on it
+def test_a_dam_at_the_inlet_is_a_floor(pressure: Pressure, slope: float, laid: int):
     """Water enters over it with the depth and the profile that it has over a bottom as high."""
     c, q, cells, n = column(slope), 0.02, 5, 12
     inlet, found = RowEnd(EndKind.DISCHARGE, discharge=q, developed=True), []
     for solid in (0, cells):
-        start = np.full(n, 0.04 + solid * CELL)
+        start, phi = np.full(n, 0.04 + solid * CELL), np.zeros((n, c.n + solid))
+        phi[:, solid : solid + laid] = PACKED
+        grains = PorousSolid.of_grains(phi, D, 1e-6)
         row = ColumnRow(
             replace(c, n=c.n + solid), 0.025, np.zeros(n), G, inlet, SAME, start=start, pressure=pressure,
             solid=np.full(n, solid),
         )  # fmt: skip
         row = with_inlet(row)
-        now = advance_row(row, row_at_rest(row, start), 0.5)
-        found.append((now.u[:-1, solid:], now.surface[row.inner] - solid * CELL, now.passed))
+        now = advance_row(row, row_at_rest(row, start, grains), 0.5, solid=grains)
+        found.append((now.u[:-1, solid:], now.surface - solid * CELL, now.passed))
         assert not now.u[:, :solid].any()
     for floor, dam in zip(*found, strict=True):
         assert dam == pytest.approx(floor, rel=1e-9, abs=1e-12)
@@ -120,7 +123,7 @@ def test_tranquil_water_enters_over_a_bed_at_critical_depth_or_that_of_the_row(s
     inlet = RowEnd(EndKind.DISCHARGE, discharge=q, developed=True)
     row = with_inlet(ColumnRow(c, 0.025, np.zeros(n), G, inlet, DROP, start=start))
     now = advance_row(row, row_at_rest(row, start, matrix), 0.01, solid=matrix)
-    thick, critical = bed_thickness(parameters_of(c), 0, matrix.phi[0]), (q * q / G) ** (1.0 / 3.0)
+    thick, critical = bed_thickness(parameters_of(c), matrix.phi[0]), (q * q / G) ** (1.0 / 3.0)
     assert now.surface[0] >= thick + critical * (1.0 - 1e-12)
     if surface < thick:
         assert now.surface[0] == pytest.approx(thick + critical)

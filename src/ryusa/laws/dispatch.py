@@ -64,7 +64,7 @@ mixing_length = dispatch(
 )
 # Whether it grows through the grains, from the bed that they make.
 length_through_grains = marked(Mixing, "grains")
-# Whether it is bounded by the widths of shear layers.
+# Whether it is bounded by the thickness of shear layers.
 length_of_layers = marked(Mixing, "layers")
 # Whether the mixing length depends on the shear stress of a wall, so that the solver must iterate.
 length_of_wall = marked(Mixing, "wall")

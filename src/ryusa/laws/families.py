@@ -344,7 +344,8 @@ class Mixing(Family, key="water.column.mixing_length"):
     LI_SAWAMOTO = (4, "Li-Sawamoto", None, "kappa times the integral of (packed - phi)/packed",
         "Li & Sawamoto 1995", ("kappa", "packed"), ("grains",))
     SHEAR_LAYER = (5, "shear layer", None,
-        "that of Li & Sawamoto, at most 0.19 of the half width of jets and eddies", "Launder & Rodi 1983",
+        "that of Li & Sawamoto, at most 0.12 of the vorticity thickness of jets and mixing layers",
+        "Launder & Rodi 1983, Birch & Eggers 1972",
         ("kappa", "packed"), ("grains", "layers"))
 
 

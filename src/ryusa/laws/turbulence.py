@@ -128,39 +128,23 @@ def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: floa
 
 
 @law
-def length_jet(thickness: float) -> float:
-    """Mixing length in the outer layer of a jet [m]; thickness [m]: speed lost over its steepest rise.
+def length_shear_layer(thickness: float) -> float:
+    """Mixing length in a free shear layer [m]; vorticity thickness [m]: speed lost over its steepest rise.
 
     Notes
     -----
     Source: plane wall jets widen by 0.073 of their way (Launder & Rodi 1983, Ann. Rev. Fluid Mech. 15), a
-    free jet U sech(0.881 y/b)**2 by S with a viscosity S U b/(4 0.881**2). With the first rate, the length
-    has this viscosity where the second profile is steepest, 0.679 U/b.
+    free jet U sech(0.881 y/b)**2 by S with a viscosity S U b/(4 0.881**2). With the first rate, 0.126 of the
+    thickness, 1.474 b, has this viscosity where the profile is steepest. A mixing layer
+    U/2 (1 + erf(11 y/x)) (Goertler's profile, spreading parameter of Birch & Eggers 1972) has the viscosity
+    U x/(4 11**2): there it is 0.113 of the thickness, sqrt(pi) x/11. The law has 0.12 for both.
 
     Examples
     --------
-    >>> round(length_jet(0.01), 6)
-    0.00129
+    >>> round(length_shear_layer(0.01), 6)
+    0.0012
     """
-    return 0.129 * thickness
-
-
-@law
-def length_mixing_layer(thickness: float) -> float:
-    """Mixing length between a stream and still water [m]; thickness [m]: speed lost over its steepest rise.
-
-    Notes
-    -----
-    Source: U/2 (1 + erf(11 y/x)) (Goertler's profile with the spreading parameter of Birch & Eggers 1972) has
-    the viscosity U x/(4 11**2) and the thickness sqrt(pi) x/11. The length has this viscosity where the
-    profile is steepest: thickness/sqrt(4 11 sqrt(pi)).
-
-    Examples
-    --------
-    >>> round(length_mixing_layer(0.01), 6)
-    0.00113
-    """
-    return 0.113 * thickness
+    return 0.12 * thickness
 
 
 @law

@@ -67,10 +67,7 @@ class PorousSolid:
 
     @staticmethod
     def of_grains(phi: Floats, d: float, nu: float, *, inertia: bool = True) -> "PorousSolid":
-        """Grains at rest of concentration phi [-] and diameter d [m], by Ergun's law.
-
-        nu [m2/s] is the viscosity of the water; without `inertia` the law is Darcy's.
-        """
+        """Grains at rest, of phi [-] and d [m], in water of nu [m2/s], by Ergun's law; else Darcy's."""
         linear = np.array([[ergun_linear(one, d, nu) for one in row] for row in phi.tolist()])
         quadratic = np.array([[ergun_quadratic(one, d) * inertia for one in row] for row in phi.tolist()])
         return PorousSolid(phi, linear, quadratic)
@@ -218,7 +215,7 @@ class ColumnRow(Flow):
         """The same row with another gravity along and normal to the x axis [m/s2]."""
         return replace(self, column=replace(self.column, g_x=g_x), g_z=g_z)
 
-    def with_ends(self, values: Floats) -> Floats:
+    def with_ends(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values of the segments, and beyond open ends those of the segment beside, in a new array."""
         if self.periodic:
             return np.array(values)
@@ -232,9 +229,11 @@ class ColumnRow(Flow):
         return b
 
     def solid_cells(self) -> Ints:
-        """Number of solid cells of each segment, ends included."""
-        solid = np.zeros(self.n_segment, np.int64) if self.solid is None else self.solid
-        return solid.copy() if self.periodic else np.concatenate([[0], solid, [0]])
+        """Number of solid cells of each segment; beyond an end with the flow of the row, as beside it."""
+        solid = self.with_ends(np.zeros(self.n_segment, np.int64) if self.solid is None else self.solid)
+        for at, end in ((0, self.upstream), (-1, self.downstream)):
+            solid[at] *= end is None or end.kind >= EndKind.UNIFORM
+        return solid
 
     def cells_of_dams(self) -> Ints:
         """Number of the lowest cells of each segment that a dam takes, seeping ones too, ends included."""

@@ -15,9 +15,8 @@ from ryusa.laws.side_walls import friction_gap_laminar, side_wall_drag
 from ryusa.laws.turbulence import (
     height_between,
     length_growth_li_sawamoto,
-    length_jet,
-    length_mixing_layer,
     length_pore_egashira,
+    length_shear_layer,
 )
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
@@ -26,7 +25,7 @@ NO_SLIP, SMOOTH, ROUGH, MOVING = numbers(
     __name__, BedKind.NO_SLIP, BedKind.SMOOTH, BedKind.ROUGH, BedKind.MOVING
 )
 LAMINAR = int(Mixing.LAMINAR)
-LAID = 1.0 / 3.0  # of the packed concentration, from which grains are a bed
+LOOSE = 1.0 / 3.0  # of the packed concentration, from which grains on the bottom are a bed, settled or not
 RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 
@@ -58,6 +57,31 @@ def averaged(dz: float, d: float, m: int, phi: Floats) -> Floats:
                 weight += part
             mean[k] = total / weight
     return mean
+
+
+@kernel
+def bed_thickness(p: ColumnParameters, phi: Floats) -> float:
+    """Thickness of the bed of grains that lies on the bottom [m]; 0 without one.
+
+    Notes
+    -----
+    It reaches from the bottom up to where the concentration phi [-] of the cells, averaged over the height of
+    a grain, falls below LOOSE times that of a bed at rest; thin layers with less do not end it, up to the
+    height of a grain.
+    """
+    cells = len(phi)
+    mean, least = averaged(p.dz, p.d, cells - 1, phi), LOOSE * p.phi_max
+    top = -1
+    for k in range(cells):
+        if mean[k] >= least:
+            top = k
+        elif not (k - top) * p.dz <= p.d:
+            break
+    if top < 0:
+        return 0.0
+    if top + 1 == cells:
+        return cells * p.dz
+    return (top + 0.5 + (mean[top] - least) / (mean[top] - mean[top + 1])) * p.dz
 
 
 @kernel
@@ -137,8 +161,8 @@ def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floa
     Notes
     -----
     One layer reaches from the highest speed to the surface, above a jet along the bed, the other down to the
-    bed, a mixing layer as behind a step. The bound of the first counts by the share of the highest speed that
-    is lost over it, that of the second by how far this is above one half: along a wall less is lost.
+    bed, a mixing layer as behind a step. A bound counts in full from a shape factor of 3 on, as layers have
+    that part from a wall or end in still water, and not at all below 2, as along walls.
     """
     if not length_of_layers(p.mixing):
         return
@@ -146,9 +170,10 @@ def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floa
     for k in range(1, m + 1):
         if abs(u[k]) > abs(u[at]):
             at = k
-    low = at  # down to a bed of grains, whose drag slows the water in their pores
-    while low > 0 and phi[low - 1] < LAID * p.phi_max:
-        low -= 1
+    # down to a bed of grains, whose drag slows the water in their pores
+    low = min(math.floor(bed_thickness(p, phi[: m + 1]) / p.dz + 0.5), at)
+    if u[at] == 0.0:
+        return
     along = math.copysign(1.0, u[at])
     bound_by_layer(p, at, m, along, phi, z, u, square)
     bound_by_layer(p, at, low, along, phi, z, u, square)
@@ -159,20 +184,19 @@ def bound_by_layer(
     p: ColumnParameters, at: int, end: int, along: float, phi: Floats, z: Floats, u: Floats, square: Floats
 ) -> None:
     """The same at the faces between the cell of the highest speed and that at the end of a layer."""
-    above = end > at
-    way = 1 if above else -1
+    way = 1 if end > at else -1
     highest, least, steepest = along * u[at], along * u[at], 0.0
+    lost, carried = 0.0, 0.0  # thickness of displacement, and of momentum [m]
     for k in range(at + way, end + way, way):
-        least = min(least, along * u[k])
-        steepest = max(steepest, along * (u[k - way] - u[k]) / abs(z[k] - z[k - way]))
-    fall = highest - least
-    if not fall > 0.0:
+        here, before, gap = along * u[k], along * u[k - way], abs(z[k] - z[k - way])
+        least, steepest = min(least, here), max(steepest, (before - here) / gap)
+        for one in (before / highest, here / highest):
+            lost += 0.5 * gap * (1.0 - one)
+            carried += 0.5 * gap * (1.0 - one) * one
+    if not steepest > 0.0:
         return
-    part = min(fall / highest, 1.0)
-    if above:
-        most = length_jet(fall / steepest)
-    else:
-        most, part = length_mixing_layer(fall / steepest), max(2.0 * part - 1.0, 0.0)
+    most = length_shear_layer((highest - least) / steepest)
+    part = min(max(lost / carried - 2.0, 0.0), 1.0) if carried > 0.0 else 1.0
     for f in range(min(at, end) + 1, max(at, end) + 1):
         share = 0.5 * (phi[f - 1] + phi[f])
         length, bound = math.sqrt(square[f]), math.sqrt(1.0 - share) * most

@@ -242,17 +242,15 @@ def shape_of(row: ColumnRow) -> RowShape:
     else:
         west = np.concatenate([[0], np.arange(n), [n]])
         east = np.concatenate([[0], np.arange(n) + 1, [n]])
-    kind, first = np.full(len(left), OPEN), row.solid_cells()
-    for j, beside, end in ((0, 1, row.upstream), (-1, -2, row.downstream)):
+    kind = np.full(len(left), OPEN)
+    for j, end in ((0, row.upstream), (-1, row.downstream)):
         if end is not None and end.kind is EndKind.WALL:
             kind[j] = WALL
         if end is not None and end.kind is EndKind.DISCHARGE:
             kind[j] = INFLOW
-        if end is not None and end.kind in (EndKind.DISCHARGE, EndKind.UNIFORM):
-            first[j] = first[beside]  # a dam goes on with the flow
     steep = 1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2
     shape = RowShape(
-        left, right, west, east, first, shut, np.delete(np.arange(len(bottom)), air), kind,
+        left, right, west, east, row.solid_cells(), shut, np.delete(np.arange(len(bottom)), air), kind,
         bottom, steep, steep if row.hydrostatic else np.ones(len(left)), not row.hydrostatic,
         (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),

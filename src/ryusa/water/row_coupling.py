@@ -14,14 +14,13 @@ from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
-from ryusa.water.closures import averaged
+from ryusa.water.closures import averaged, bed_thickness
 from ryusa.water.coupling_interval import refuse_unresolved, steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.protocol import Fluid
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_ends import EndsOverTime, with_inlet
 from ryusa.water.row_grains import GrainsInRow
-from ryusa.water.row_inlet import bed_thickness
 from ryusa.water.row_layout import RowEnds
 from ryusa.water.row_threads import RowThreads
 
@@ -208,12 +207,12 @@ class RowCoupling(Fluid):
 
     @property
     def bed_at_inlet(self) -> float:
-        """Thickness of the bed in the first segment over which water enters (`row_inlet`) [m].
+        """Height of the bed or dam in the first segment over which water enters (`row_inlet`) [m].
 
         It is that at the last exchange.
         """
-        solid = int(self.row.solid_cells()[self.row.inner.start])
-        return bed_thickness(parameters_of(self.row.column), solid, np.ascontiguousarray(self.phi[0]))
+        solid, p = int(self.row.solid_cells()[self.row.inner.start]), parameters_of(self.row.column)
+        return solid * p.dz + bed_thickness(p, np.ascontiguousarray(self.phi[0][solid:]))
 
     def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
         """Raise a `GrainLost` for a grain beyond the ends of the row; parameters as of `Fluid.refuse_lost`.
@@ -315,7 +314,7 @@ class RowCoupling(Fluid):
         speed = np.abs(self.state.u)
         taken = row.cells_of_dams()
         for i, phi in enumerate(np.ascontiguousarray(self.phi), start=row.inner.start):
-            thick = bed_thickness(p, 0, phi)
+            thick = bed_thickness(p, phi)
             if taken[i] or not thick >= 2.0 * p.d:
                 continue
             lower = speed[(left == i) | (right == i), : math.ceil(0.5 * thick / p.dz)]

@@ -80,7 +80,7 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     if not end.developed:
         return replace(row, upstream=replace(end, depth=float(depth)))
     assert row.start is not None
-    first = float(row.start[0] - row.bottom[0]) - int(row.solid_cells()[row.inner.start]) * row.column.dz
+    first = float(row.start[0] - row.bottom[0]) - _dam(row)
     there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))
     flow, _ = steady(
         replace(row.column, g_x=0.0, depth=there, drive=Drive.DISCHARGE, discharge=end.discharge)
@@ -107,6 +107,11 @@ def _normal_depth(row: ColumnRow, along: float, q: float) -> float:
     return 0.5 * (low + high)
 
 
+def _dam(row: ColumnRow) -> float:
+    """Height over the bottom of the dam over which water enters [m]; 0 without one."""
+    return float(row.solid_cells()[0] * row.column.dz)
+
+
 def _room(row: ColumnRow) -> float:
-    """Largest depth that the cells hold [m]."""
-    return row.column.n * row.column.dz
+    """Largest depth that the cells hold at the inlet [m]."""
+    return row.column.n * row.column.dz - _dam(row)

@@ -1,37 +1,12 @@
-"""Compiled inlet of a row of columns: water that enters over the bed in the first segment (design/0027)."""
+"""Compiled inlet of a row of columns: water enters over the dam or the bed there (design/0027)."""
 
 import math
 
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.closures import averaged
+from ryusa.water.closures import bed_thickness
 
 NO_INFLOW = 5  # status beside those of `momentum_balance`: nothing can enter at the inlet
-LOOSE = 1.0 / 3.0  # of the packed concentration, from which grains on the bottom are a bed, settled or not
-
-
-@kernel
-def bed_thickness(p: ColumnParameters, first: int, phi: Floats) -> float:
-    """Thickness of the bed that lies on the bottom of a segment [m]: solid cells, and grains on them.
-
-    Notes
-    -----
-    It has the `first` cells, which are solid, and reaches up to where the concentration phi [-], shape (n,),
-    averaged over the height of a grain, falls below LOOSE times that of a bed at rest; thin layers with less
-    do not end it, up to the height of a grain.
-    """
-    mean, least = averaged(p.dz, p.d, p.n - 1, phi), LOOSE * p.phi_max
-    top = first - 1
-    for k in range(first, p.n):
-        if mean[k] >= least:
-            top = k
-        elif not (k - top) * p.dz <= p.d:
-            break
-    if top < first:
-        return first * p.dz
-    if top + 1 == p.n:
-        return p.n * p.dz
-    return (top + 0.5 + (mean[top] - least) / (mean[top] - mean[top + 1])) * p.dz
 
 
 @kernel
@@ -73,7 +48,7 @@ def inflow(
     -----
     Nothing enters within the bed: its pores take water from above, as their pressure gradient asks.
     """
-    bed, total = bed_thickness(p, first, phi), 0.0
+    bed, total = first * p.dz + bed_thickness(p, phi[first:]), 0.0
     for k in range(p.n):
         u[k] = profile[k]
         if bed > 0.0:

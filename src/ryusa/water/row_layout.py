@@ -32,7 +32,7 @@ class RowEnds(NamedTuple):
     segment: Ints  # the segment, shape (n_end,)
     beside: Ints  # its neighbour in the row
     rule: Ints  # DEPTH_GIVEN or SAME_DEPTH
-    depth: Floats  # depth for DEPTH_GIVEN, at an inlet over the bed there [m]
+    depth: Floats  # depth for DEPTH_GIVEN, at an inlet over the dam or bed there [m]
     discharge: float  # through a station of kind INFLOW, the first [m2/s]
     shape: Floats  # profile of its speed, to any scale, shape (n,)
 

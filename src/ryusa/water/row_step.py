@@ -11,11 +11,12 @@ import math
 from ryusa.model.row import INFLOW, OPEN, SAME_DEPTH, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
+from ryusa.water.closures import bed_thickness
 from ryusa.water.drive import imposed_gradient
 from ryusa.water.limiter import limited
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
 from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
-from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
+from ryusa.water.row_inlet import NO_INFLOW, depth_over_bed, inflow
 from ryusa.water.row_layout import NappeArrays, RowEnds, RowGrains, RowMatrix, RowShape, RowWater
 from ryusa.water.row_nappe import LANDED, book_nappes, hang, throw, with_landing
 from ryusa.water.row_pressure import PressureArrays, begin_pressure, find_tops, keep_w, viscosities
@@ -58,7 +59,8 @@ def fill_ends(p: ColumnParameters, ends: RowEnds, shape: RowShape, phi: Floats, 
             depth = water.surface[ends.beside[e]] - p.z_low
         bed = 0.0
         if shape.kind[shape.east[i]] == INFLOW:
-            bed = bed_thickness(p, int(shape.first[i]), phi[i])
+            solid = int(shape.first[i])
+            bed = solid * p.dz + bed_thickness(p, phi[i, solid:])
         if bed > 0.0:
             depth = depth_over_bed(bed, float(depth), ends.rule[e] != SAME_DEPTH, ends.discharge, shape.g_z)
         water.surface[i] = p.z_low + depth

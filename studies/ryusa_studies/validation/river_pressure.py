@@ -265,7 +265,7 @@ def _of_both(function: object) -> list[Task]:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Nine minutes with jumps, sills and bar; when quick without what takes longest, or misses its limit."""
+    """Twelve minutes with jumps and sills; when quick without what takes longest, or misses its limit."""
     every = [*_waves(), *_over_waves(plan), *_in_beds(), *_of_both(plate), *_of_both(brink)]
     if plan.level is Level.QUICK:
         return every

@@ -19,12 +19,19 @@ DECLARED = declared(__file__)
 G = 9.80665
 THICK, DEEP, LONG = 0.02, 0.5, 1.6  # of the jet, the water, the row [m]
 WITHIN = 0.3, 1.0  # where it widens freely: beyond its core, before the end turns it [m]
-LENGTHS = ("shear layer", "Li-Sawamoto")
-EDDIES = (("shear layer", 5), ("shear layer", 10), ("Li-Sawamoto", 10))  # and cells of the step
-KNOWN = 6.28  # length of the eddy in heights
 TIMES = 40  # at which either is looked at; the later half counts
-STEP, BEFORE, SPEED = 0.05, 5.0, 0.25  # height [m], depth before it in heights, speed there [m/s]
+STEP, SPEED = 0.02, 0.25  # height [m], speed before it [m/s]
 AHEAD, BEHIND = 3.0, 20.0  # lengths of the row before and behind the step, in heights
+CORNER = 2.0  # within which a smaller eddy may lie, in heights
+LENGTHS = ("shear layer", "Li-Sawamoto")
+# Cells of the step, and depth before it over its height.
+EDDIES = (
+    ("shear layer", 10, 5.0),
+    ("shear layer", 5, 5.0),
+    ("Li-Sawamoto", 10, 5.0),
+    ("shear layer", 10, 1.0),
+)
+KNOWN = 6.28  # length of the eddy in heights
 
 
 def widening(mixing: str, cell: float = 0.005, time: float = 20.0) -> dict[str, Floats]:
@@ -62,54 +69,59 @@ def _half(z: Floats, u: Floats) -> float:
     return float(np.interp(0.5 * u[most], [u[k], u[k - 1]], [z[k], z[k - 1]]))
 
 
-def eddy(mixing: str, cells: int, time: float = 30.0) -> dict[str, Floats]:
-    """A channel that becomes 1.2 times as deep, by a step so many cells high.
+def eddy(mixing: str, cells: int, before: float, time: float = 12.0) -> dict[str, Floats]:
+    """A backward-facing step so many cells high, before it so many of its heights of water.
 
     Notes
     -----
-    What enters has the boundary layer of the reference, 1.2 steps thick at the step, by its power of 1/7; the
-    row begins with the speed of the discharge everywhere, so that no wave runs through it.
+    What enters has a boundary layer about as thick as that of the reference, 1.2 heights, by its power of
+    1/7; the row begins with the speed of the discharge everywhere, so that no wave runs through it.
 
     Returns
     -------
-    `length`, from the step to where the mean speed along the floor turns downstream, in its heights [-].
-    Mean over the later half of the time.
+    `length` of reattachment, from the step to where the mean speed along the floor turns downstream, in
+    heights; nan where none flows back. Mean over the later half of the time.
     """
     dz = STEP / cells
-    dx, deep, first = 2.0 * dz, (BEFORE + 1.0) * STEP, round(AHEAD * STEP / (2.0 * dz))
+    dx, deep, first = 2.0 * dz, (before + 1.0) * STEP, round(AHEAD * STEP / (2.0 * dz))
     n, segments = round(1.15 * deep / dz), first + round(BEHIND * STEP / dx)
     c = Column(
         z_low=0.0, dz=dz, n=n, depth=deep, nu=1e-6, bed=BedKind.SMOOTH, mixing=Mixing.of(mixing),
         surface=SurfaceRule.VOLUME,
     )  # fmt: skip
     profile = np.minimum((np.arange(n) + 0.5) * dz / (1.2 * STEP), 1.0) ** (1.0 / 7.0)
-    q = SPEED * STEP * BEFORE
+    q = SPEED * STEP * before
     row = ColumnRow(
         c, dx, np.zeros(segments), G, RowEnd(EndKind.DISCHARGE, discharge=q, profile=profile),
         RowEnd(EndKind.LEVEL, level=deep), np.where(np.arange(segments) < first, cells, 0), -AHEAD * STEP,
         pressure=Pressure.FULL,
     )  # fmt: skip
     now, arrays = row_at_rest(row, np.full(segments, deep)), RowArrays.of(row)
-    open_cells = np.arange(n) >= np.where(np.arange(segments + 1) <= first, cells, 0)[:, None]
-    depth = deep - np.where(np.arange(segments + 1) <= first, STEP, 0.0)
-    now = replace(now, u=open_cells * (q / depth)[:, None])
+    solid = np.where(np.arange(segments + 1) <= first, cells, 0)
+    now = replace(now, u=(np.arange(n) >= solid[:, None]) * (q / (deep - solid * dz))[:, None])
     mean = np.zeros(segments + 1)
     for k in range(TIMES):
         now = advance_row(row, now, time / TIMES, arrays=arrays)
         mean += now.u[:, 0] * (2 * k >= TIMES)
-    last = int(np.flatnonzero((row.x_station > 0.5 * dx) & (mean < 0.0))[-1])
-    ends = row.x_station[last] + dx * mean[last] / (mean[last] - mean[last + 1])
-    return {"length": np.array(ends / STEP)}
+    x = row.x_station
+    turns = int(np.flatnonzero((x > CORNER * STEP) & (mean > 0.0))[0])
+    if mean[turns - 1] >= 0.0:
+        return {"length": np.array(np.nan)}
+    return {"length": np.array((x[turns] - dx * mean[turns] / (mean[turns] - mean[turns - 1])) / STEP)}
 
 
 def tasks() -> Sequence[Task]:
-    """Two minutes."""
+    """Three minutes."""
     jets = [calculation(widening, mixing=one, seconds=20.0) for one in LENGTHS]
-    return [*jets, *(calculation(eddy, mixing=one, cells=n, seconds=8.0 * (n / 5) ** 3) for one, n in EDDIES)]
+    eddies = [
+        calculation(eddy, mixing=one, cells=n, before=h, seconds=0.008 * n**3 * (1.0 + h))
+        for one, n, h in EDDIES
+    ]
+    return [*jets, *eddies]
 
 
 def judge(found: Found) -> Sequence[Finding]:
-    """Beside the rate of plane wall jets, and the eddy of a direct numerical simulation."""
+    """Beside the rate of plane wall jets, and the reattachment of a direct numerical simulation."""
     runs = [found[one] for one in tasks()]
     own, other = runs[:2]
     lengths = [float(one["length"]) for one in runs[2:]]
@@ -121,10 +133,11 @@ def judge(found: Found) -> Sequence[Finding]:
         {"rate": abs(float(own["rate"]) / 0.073 - 1.0)}, other=float(other["rate"]),
         at=float(x[-1]), left=float(own["speed"][-1]), rest=float(other["speed"][-1]),
     )  # fmt: skip
+    best, coarse, plain, twice = lengths
     step = DECLARED["step"].finding(
-        [Curve(f"{word}, {n} cells", np.array([n]), np.array([one]))
-         for (word, n), one in zip(EDDIES, lengths, strict=True)],
-        [Curve("Le, Moin & Kim", np.array([EDDIES[0][1], EDDIES[-1][1]]), np.full(2, KNOWN))],
-        {"length": lengths[1] / KNOWN}, coarse=lengths[0] / KNOWN, other=lengths[2] / KNOWN,
+        [Curve(LENGTHS[0], np.array([5.0, 10.0]), np.array([coarse, best])),
+         Curve(LENGTHS[1], np.array([10.0]), np.array([plain]))],
+        [Curve("Le, Moin & Kim", np.array([5.0, 10.0]), np.full(2, KNOWN))],
+        {"length": best / KNOWN}, coarse=coarse, plain=plain, twice=twice,
     )  # fmt: skip
     return [finding, step]

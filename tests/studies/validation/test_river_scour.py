@@ -30,6 +30,6 @@ def test_the_mean_depth_of_the_last_seconds_is_judged(ratio, outcome):
 def test_jet_and_eddy_are_judged_by_the_length_of_shear_layers(rate, jet, length, eddy):
     x = np.linspace(0.3, 1.0, 8)
     own = {"x": x, "width": 0.02 + rate * x, "speed": 1.0 - 0.4 * x, "rate": np.array(rate)}
-    lengths = ({"length": np.array(one)} for one in (6.28, length, 6.28))
+    lengths = ({"length": np.array(one)} for one in (length, 6.28, 6.28, 6.28))
     found = dict(zip(layers.tasks(), (own, {**own, "rate": np.array(9.0)}, *lengths), strict=True))
     assert [one.outcome for one in layers.judge(found)] == [jet, eddy]

@@ -21,6 +21,7 @@ from ryusa.casefile.row.values import (
     bed_over,
     bottom_points,
     crest_of,
+    dam_at_inlet,
     dam_span,
     deepest,
     enters_fast,
@@ -357,11 +358,12 @@ def _depths(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
 
 
 def _inlet(case: Case, plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
-    """A dry first segment gives no depth to an inlet that has none of its own and no bed to enter over."""
+    """A dry first segment gives no depth to an inlet that has none itself, and no bed or dam below it."""
     end, q = keys.upstream, discharge_of(case)
     if end is None or not q > 0.0 or inlet_depth(case) is not None or plan.start[0] > plan.bottom[0]:
         return
-    if bed_over(case, plan.x)[0] >= reference_diameter(case) or enters_fast(case, q):
+    over_bed = bed_over(case, plan.x)[0] >= reference_diameter(case)
+    if over_bed or dam_at_inlet(case, plan) > 0.0 or enters_fast(case, q):
         return
     why = "normal flow is not supercritical there"
     if reaches(case, q)[0].froude > 1.0:

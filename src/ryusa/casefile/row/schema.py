@@ -76,9 +76,9 @@ class RowEndSection(Section):
     t [s],q [m3/s] (or m2/s), or pairs of time and discharge, straight between them. Before the first and
     after the last it stays."""
     depth: PositiveLength | None = None
-    """Depth of the water that enters, with end = "discharge" alone; over a bed of grains in the first segment
-    it counts from its top. When not given: that of the row, and where normal flow is supercritical the
-    normal depth."""
+    """Depth of the water that enters, with end = "discharge" alone; over a dam or a bed of grains in the
+    first segment it counts from the top. When not given: that of the row, and where normal flow is
+    supercritical the normal depth."""
     profile: Literal["developed", "uniform"] = "developed"
     """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every
     height."""

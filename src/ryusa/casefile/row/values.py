@@ -290,7 +290,7 @@ def deepest(case: Case, plan: RowPlan) -> float:
         for level in [] if end is None else levels_of(case, end):
             found.append(float((level - tilt * (at - plan.x) - plan.bottom).max()))
     if (entering := inlet_depth(case)) is not None:
-        found.append(entering + float(bed[0]))
+        found.append(entering + max(float(bed[0]), dam_at_inlet(case, plan)))
     return max((one for one in found if one > 0.0), default=0.0)
 
 
@@ -352,6 +352,13 @@ def dam_span(plan: RowPlan, dam: RowDamSection) -> tuple[int, int]:
     """First segment of a dam, and the one after its last."""
     inside_it = np.flatnonzero((plan.x >= dam.begin) & (plan.x <= dam.end))
     return (int(inside_it[0]), int(inside_it[-1]) + 1) if len(inside_it) else (0, 0)
+
+
+def dam_at_inlet(case: Case, plan: RowPlan) -> float:
+    """Height over the bottom of the dam in the first segment, over which water enters [m]; 0 without one."""
+    dams = [one for one in keys_of_row(case).dams if one.concentration is None]
+    over = (crest_of(plan, one) - plan.bottom[0] for one in dams if one.begin <= plan.x[0] <= one.end)
+    return max((float(one) for one in over), default=0.0)
 
 
 def fastest(case: Case, plan: RowPlan) -> float:
