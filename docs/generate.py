@@ -36,7 +36,8 @@ UNITS = {
 CHANGED = (
     "Bands, and conditions of what they judge, that were changed after a number was known. The first entry "
     "stands beside the later one with the verdict by both, from the numbers of the kept ledger; comparisons "
-    "of the full level are in no kept ledger, but for `river_pressure_grains`, and are *not judged* here. Below them changed samples and tests."
+    "of the full level are in no kept ledger, but for `river_pressure_grains`, and are *not judged* here. "
+    "Below them changed samples and tests."
 )
 KNOWN_NUMBERS = {0.5235987755982988: "pi/6", 0.7853981633974483: "pi/4"}
 
