@@ -170,10 +170,10 @@ def bound_by_layers(p: ColumnParameters, m: int, phi: Floats, z: Floats, u: Floa
     for k in range(1, m + 1):
         if abs(u[k]) > abs(u[at]):
             at = k
-    # down to a bed of grains, whose drag slows the water in their pores
-    low = min(math.floor(bed_thickness(p, phi[: m + 1]) / p.dz + 0.5), at)
     if u[at] == 0.0:
         return
+    # down to a bed of grains, whose drag slows the water in their pores
+    low = min(math.floor(bed_thickness(p, phi[: m + 1]) / p.dz + 0.5), at)
     along = math.copysign(1.0, u[at])
     bound_by_layer(p, at, m, along, phi, z, u, square)
     bound_by_layer(p, at, low, along, phi, z, u, square)

@@ -62,8 +62,8 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     -----
     Where the bottom falls and normal flow is supercritical, water enters at normal depth unless a depth
     is given; else the row finds the depth. A developed profile is that of steady flow as deep as this, as
-    normal flow, or as the row at its start. Depth and profile count from the dam or
-    the bed of grains where one lies.
+    normal flow, or as the row at its start. Depth and profile count from the dam or the bed of grains where
+    one lies.
     """
     end = row.upstream
     if end is None or end.kind is not EndKind.DISCHARGE or end.discharge == 0.0:
